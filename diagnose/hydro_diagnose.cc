@@ -138,6 +138,36 @@ void RequireDifferentFiles(const DiagnoseRequest& request) {
   }
 }
 
+bool SameValues(const std::vector<double>& a, const std::vector<double>& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
+}
+
+// Whether both have the same commands and measured values: a copy proves nothing that its original does not.
+bool SameSamples(const runs::MeasuredRun& a, const runs::MeasuredRun& b) {
+  bool measured = false;
+  for (const runs::SignalName& one : runs::kSignals) {
+    const std::vector<double>&first = (a.*one.signal).values, &second = (b.*one.signal).values;
+    if (!SameValues(first, second)) return false;
+    measured = measured || (one.signal != &runs::MeasuredRun::voltage && !first.empty());
+  }
+  return measured;
+}
+
+void RequireDifferentSamples(const ReadFiles& fitted, const ReadFiles& held_out) {
+  std::vector<const runs::MeasuredRun*> all;
+  for (const ReadFiles* list : {&fitted, &held_out}) {
+    for (const runs::MeasuredRun& run : list->runs) all.push_back(&run);
+  }
+  for (size_t i = 0; i < all.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      if (!SameSamples(*all[i], *all[k])) continue;
+      throw InputError(all[i]->file + ": found the same samples as in " + all[k]->file +
+                       ", allowed each run once: leave out the copy");
+    }
+  }
+}
+
 // Files that RunDiagnosis may write, or remove, in the request's folder.
 constexpr const char* kReportFiles[] = {"report.html", "report.json", "model.toml", "next.toml"};
 
@@ -198,6 +228,7 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const model::ModelDesc
   options.seed = static_cast<uint64_t>(request.seed);
   report_progress({"reading the runs", 0});
   ReadFiles fitted = ReadRuns(request.runs, model.units), rest = ReadRuns(request.held_out, model.units);
+  RequireDifferentSamples(fitted, rest);
   TellApart(&fitted, &rest);
   std::vector<runs::MeasuredRun>&runs = fitted.runs, &held_out = rest.runs;
   *motor_alone = IsMotorAlone(runs) && (held_out.empty() || IsMotorAlone(held_out));
@@ -296,6 +327,7 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   RequireDifferentFiles(request);
   const model::ModelDescription model = settings::LoadModelFile(request.model);
   ReadFiles fitted = ReadRuns(request.runs, model.units), held_out = ReadRuns(request.held_out, model.units);
+  RequireDifferentSamples(fitted, held_out);
   TellApart(&fitted, &held_out);
   std::vector<runs::MeasuredRun>& runs = fitted.runs;
   runs.insert(runs.end(), held_out.runs.begin(), held_out.runs.end());

@@ -75,7 +75,8 @@ model::EffectDescription ReadEffect(SectionReader section, const model::EffectIn
                                     const UnitSystem& units) {
   model::EffectDescription effect;
   effect.id = info.id;
-  section.Take("definition");
+  if (section.Has("definition"))
+    section.Take("definition");  // else it is not among the keys that errors list
   for (const model::ParameterInfo& parameter : info.parameters) {
     if (parameter.list == model::List::kNames) {
       ReadNames(&section, parameter, &effect);
@@ -86,9 +87,11 @@ model::EffectDescription ReadEffect(SectionReader section, const model::EffectIn
       for (const std::string& name : parameter.names) choices.emplace_back(name, name);
       section.Choice(parameter.name, choices, &effect.names[parameter.name]);
       section.Require(parameter.name, QuotedList(parameter.names) + " (" + parameter.meaning + ")");
-    } else if (!parameter.optional || section.Has(parameter.name)) {
-      section.Number(parameter.name, &effect.parameters[parameter.name], RangeOf(parameter));
-      section.Require(parameter.name, Wanted(parameter, units));
+    } else {
+      double value = 0;
+      if (section.Number(parameter.name, &value, RangeOf(parameter)))
+        effect.parameters[parameter.name] = value;
+      if (!parameter.optional) section.Require(parameter.name, Wanted(parameter, units));
     }
   }
   section.Finish();

@@ -5,6 +5,7 @@
 #include "base/file_kind.h"
 #include "base/number_text.h"
 #include "base/units.h"
+#include "model/equations/equations.h"
 #include "model/terms/parameter_info.h"
 #include "settings/effect_file.h"
 #include "settings/effect_sections.h"
@@ -110,10 +111,21 @@ bool ReadSides(SectionReader& section, const SideNames& names, const model::Para
   return true;
 }
 
+// Throws InputError for a model whose parts contradict each other, for example two accumulators.
+void CheckEquations(const model::ModelDescription& description, const std::string& file) {
+  try {
+    const model::Equations accepted(description, {});
+  } catch (const model::ModelError& error) {
+    throw InputError(file + ": " + error.what());
+  }
+}
+
 // With an area_ratio, c_2 over c_1, c is the mean of the two sides.
 void ReadAreaRatio(SectionReader& section, bool has_sides, std::vector<model::EffectDescription>* effects) {
   double ratio = 1;
-  if (!section.Number("area_ratio", &ratio, kPositive)) return;
+  const model::ParameterInfo& difference = model::FindEffect(kSides[0].effect)->parameters.front();
+  const double largest = std::round((1 + difference.max) / (1 - difference.max));
+  if (!section.Number("area_ratio", &ratio, {.min = 1 / largest, .max = largest})) return;
   if (has_sides)
     throw section.Error("area_ratio", "it beside c_1", "c_1 and c_2, or c and area_ratio, not both");
   if (ratio != 1) effects->push_back(SideDifference(kSides[0], (ratio - 1) / (ratio + 1)));
@@ -216,6 +228,7 @@ ModelWithText WithDefinitions(const std::string& text, const std::string& file) 
   root.place = file;
   if (IncludeDefinitions(&root, file)) model.text = FormatToml(root);
   model.description = ReadModel(root);
+  CheckEquations(model.description, file);
   return model;
 }
 

@@ -60,6 +60,8 @@ class Effect {
 
   // True when the effect's valves replace the ideal one-way valves.
   virtual bool replaces_valves() const { return false; }
+  // True when the effect is a limit of the torque that falls with speed.
+  virtual bool limits_torque() const { return false; }
   // Which of the effect's states replaces p_3, and which replaces the arm's angle in V_1 and V_2; -1: none.
   virtual int p_3_state() const { return -1; }
   virtual int actuator_angle_state() const { return -1; }

@@ -195,6 +195,11 @@ void Equations::AddEffect(const EffectDescription& effect, const StateSizes& siz
   data_.switches += made.switches();
   data_.reads_late |= made.reads_late();
   data_.reach = std::max(data_.reach, made.reach());
+  const auto limits = [](const auto& one) { return one->limits_torque(); };
+  if (made.limits_torque()) {
+    CheckOnlyOne(std::count_if(data_.effects.begin(), data_.effects.end(), limits) > 1, effect.id,
+                 "motor.speed_torque_limit and motor.current_limit");
+  }
   if (made.replaces_valves()) {
     CheckOnlyOne(!data_.ideal_valves, effect.id, "valve.check and valve.pilot_check");
     data_.ideal_valves = false;

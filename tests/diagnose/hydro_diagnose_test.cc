@@ -31,12 +31,8 @@ class HydroDiagnoseTest : public ::testing::Test {
     std::string pattern = ::testing::TempDir() + "/hydro_diagnose_XXXXXX";
     folder_ = mkdtemp(pattern.data());
     Write("model.toml", settings::FormatModel({"Table 1", testing::Table1(), {}}));
-    std::string table = "time_s,voltage_V,p1_psi\n";
-    for (int i = 0; i < 120; ++i) {
-      table += std::to_string(0.001 * i) + ",2," + std::to_string(100 + i % 7) + "\n";
-    }
     for (const char* stem : {"a", "b"}) {
-      Write(stem + std::string(".csv"), table);
+      Write(stem + std::string(".csv"), Table(stem[0]));
       Write(stem + std::string(".toml"),
             "shaft = \"clamped\"\n[columns]\ntime = \"time_s\"\nvoltage = \"voltage_V\"\np1 = \"p1_psi\"\n");
     }
@@ -46,6 +42,14 @@ class HydroDiagnoseTest : public ::testing::Test {
   }
   ~HydroDiagnoseTest() override { fs::remove_all(folder_); }
 
+  // A run whose pressures begin there.
+  static std::string Table(int first) {
+    std::string table = "time_s,voltage_V,p1_psi\n";
+    for (int i = 0; i < 120; ++i) {
+      table += std::to_string(0.001 * i) + ",2," + std::to_string(first + i % 7) + "\n";
+    }
+    return table;
+  }
   std::string Path(const std::string& name) const { return folder_ + "/" + name; }
   void Write(const std::string& name, const std::string& text) const { std::ofstream(Path(name)) << text; }
   std::string Read(const std::string& name) const {
@@ -340,12 +344,23 @@ TEST_F(HydroDiagnoseTest, KeepsItsInputs) {
   EXPECT_THAT(ErrorOf(request_), HasSubstr("report.json"));
 }
 
+// Tests that a copy of a fitted run is no proof, also where its name and sidecar differ.
+TEST_F(HydroDiagnoseTest, ACopyIsRefused) {
+  Write("copy.csv", Table('a'));
+  Write("copy.toml", "name = \"another day\"\n" + Read("a.toml"));
+  request_.held_out = {Path("copy.csv")};
+  EXPECT_THAT(ErrorOf(request_), HasSubstr("copy.csv: found the same samples as in " + Path("a.csv")));
+  request_.runs.push_back(Path("copy.csv"));
+  request_.held_out.clear();
+  EXPECT_THAT(ErrorOf(request_), HasSubstr("allowed each run once"));
+}
+
 // Tests that runs of one name are told apart by their files, and others keep their names.
 TEST_F(HydroDiagnoseTest, RunsOfOneName) {
   const std::string sidecar = Read("a.toml");
   fs::create_directory(Path("old"));
   for (const char* stem : {"c", "old/b", "old/c"}) {
-    fs::copy_file(Path("a.csv"), Path(stem + std::string(".csv")));
+    Write(stem + std::string(".csv"), Table(110 + stem[0] + static_cast<int>(std::string(stem).size())));
     Write(stem + std::string(".toml"), "name = \"square\"\n" + sidecar);
   }
   Write("b.toml", "name = \"square\"\n" + sidecar);

@@ -140,6 +140,12 @@ TEST(Errors, Parameters) {
               HasSubstr("\"pump.unknown\" is not known"));
   EXPECT_THAT(ErrorOfBuilding(Table1Model({Lag(1), Lag(2)}), Held(model::Shaft::kClamped)),
               HasSubstr("there twice"));
+  const model::EffectDescription line = {"motor.speed_torque_limit", {{"no_load_speed", 300}}, {}},
+                                 corner = {"motor.current_limit",
+                                           {{"corner_speed", 100}, {"speed_range", 100}},
+                                           {}};
+  EXPECT_THAT(ErrorOfBuilding(Table1Model({line, corner}), Held(model::Shaft::kClamped)),
+              HasSubstr("allowed is one of those like motor.speed_torque_limit and motor.current_limit"));
   EXPECT_THAT(ErrorOfBuilding(Table1Model({Lag(-1)}), Held(model::Shaft::kClamped)),
               HasSubstr("amp.lag.tau = -1 s"));
   EXPECT_THAT(ErrorOfBuilding(Table1Model({{"amp.lag", {}, {}}}), Held(model::Shaft::kClamped)),

@@ -66,6 +66,8 @@ TEST(ModelFileTest, RefusesContradictorySides) {
   EXPECT_THAT(error(c("c_1 = 3\nc_2 = 4\narea_ratio = 2\n")),
               HasSubstr("parameters.area_ratio: found it beside c_1"));
   EXPECT_THAT(error(c("c = 3\narea_ratio = 0\n")), HasSubstr("parameters.area_ratio: found 0"));
+  EXPECT_THAT(error(c("c = 3\narea_ratio = 50\n")),
+              AllOf(HasSubstr("parameters.area_ratio: found 50"), HasSubstr("39")));
   EXPECT_THAT(error(c("c_1 = 3\nc_2 = 4\n") + "[effects.\"actuator.unequal_areas\"]\ndifference = 0.1\n"),
               HasSubstr("found it beside unequal sides in [parameters], allowed one of the two"));
 }
@@ -301,6 +303,23 @@ TEST_F(ModelFileFolderTest, NamesUnreadableFiles) {
   EXPECT_THAT(InputErrorOf([&] { LoadModelFile(folder_.string()); }),
               HasSubstr("found a folder, allowed: a file"));
   EXPECT_EQ(LoadModelFile(Write("m.toml", kModelText)).parameters.k_2, 3.68);
+}
+
+// Tests that the error of a misspelt key lists the optional keys too.
+TEST(ModelFileTest, ListsOptionalKeysOfAnEffect) {
+  const std::string text = With("[effects.\"motor.back_emf\"]\nk_e = 0.1\nta = 0.002\n");
+  EXPECT_THAT(InputErrorOf([&] { ParseModel(text, "m.toml"); }),
+              HasSubstr("\"ta\": found an unknown key, allowed \"k_e\" or \"tau\""));
+}
+
+// Tests that effects that cannot be in one model are refused where the file is read, and that the error names
+// it.
+TEST_F(ModelFileFolderTest, RefusesEffectsThatExcludeEachOther) {
+  const std::string file =
+      Write("two.toml", With("[effects.\"accumulator.gas\"]\nvolume = 1\nexponent = 1.2\n"
+                             "[effects.\"accumulator.stiffness\"]\nstiffness = 20\n"));
+  EXPECT_THAT(InputErrorOf([&] { LoadModelFile(file); }),
+              AllOf(HasSubstr(file + ": effect \"accumulator."), HasSubstr("second of its kind")));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ class TorqueLine : public EffectOf<TorqueLine<LimitLine>> {
   using EffectOf<TorqueLine<LimitLine>>::first_switch;
 
   int switches() const override { return 1; }
+  bool limits_torque() const override { return true; }
 
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
