@@ -127,6 +127,8 @@ void ProofSets::BeginAtGivenValues(ProvedSet* set) const {
 void ProofSets::BeginAtBestValues(ProvedSet* set) const {
   const size_t values = BestWithEffects(sets_, {});
   if (values >= sets_.size() || set->Effects().empty() || set->hypothesis.base.empty()) return;
+  if (set->begun == values) return;
+  set->begun = values;
   ProvedSet other = *set;
   other.hypothesis.model.parameters = sets_[values].hypothesis.model.parameters;
   for (size_t r = 0; r < other.without.size(); ++r)

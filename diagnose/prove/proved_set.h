@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "diagnose/fit/hypothesis.h"
@@ -17,11 +18,12 @@ struct ProvedSet {
   // all runs.
   std::vector<model::ModelDescription> without;
   std::vector<WindowGap> near;
-  std::vector<WindowGap> far;  // empty until a comparison needs them
-  double weight = 0;           // of the proposal; 0 if it was not proposed
-  double price = 0;            // the sum over its effects (PriceOf())
-  double price_of_values = 0;  // for the distance of its base values from those given, in the same measure
-  bool refined = false;        // refined as far as comparison of sets needs
+  std::vector<WindowGap> far;   // empty until a comparison needs them
+  double weight = 0;            // of the proposal; 0 if it was not proposed
+  double price = 0;             // the sum over its effects (PriceOf())
+  double price_of_values = 0;   // for the distance of its base values from those given, in the same measure
+  bool refined = false;         // refined as far as comparison of sets needs
+  std::optional<size_t> begun;  // the place of the set whose values it was last tried with
 
   bool tested() const { return IsTested(near); }
   std::vector<Change> Effects() const;  // the changes other than values

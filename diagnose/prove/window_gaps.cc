@@ -153,8 +153,11 @@ double WindowGap::Typical() const {
   return channels > 0 ? std::exp(logarithms / channels) : std::numeric_limits<double>::quiet_NaN();
 }
 
-WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
-  model::StartState from = AtBestTurn(model, window, window.start);
+namespace {
+
+WindowGap GapFromStart(const model::ModelDescription& model, const RunData& window,
+                       const model::StartState& start) {
+  model::StartState from = AtBestTurn(model, window, start);
   WindowGap best;
   try {
     const std::vector<model::Unknown> starts = StartUnknowns(model, window);
@@ -182,6 +185,21 @@ WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
     // tested.
   }
   return best;
+}
+
+}  // namespace
+
+WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
+  WindowGap gap = GapFromStart(model, window, window.start);
+  // Most recordings begin at rest. Where the command acts at once, the first samples of the arm's angle give
+  // it a speed that it did not have yet, and oil is stiff: no linear model leads back from there.
+  const bool estimated = !window.begins_within && window.Find(model::Channel::kArmSpeed) == nullptr;
+  if (!estimated || window.start[model::kArmSpeed] == 0 || !window.start_free[model::kArmSpeed]) return gap;
+  if (gap.tested && gap.Typical() <= kAtTheNoise) return gap;
+  model::StartState at_rest = window.start;
+  at_rest[model::kArmSpeed] = 0;
+  WindowGap other = GapFromStart(model, window, at_rest);
+  return other.tested && (!gap.tested || other.Typical() < gap.Typical()) ? other : gap;
 }
 
 std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,

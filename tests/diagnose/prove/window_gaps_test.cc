@@ -86,6 +86,22 @@ TEST(WindowGap, StartIsCorrected) {
   }
 }
 
+// Tests that a run that begins at rest is followed from there, where the arm's angle, the only sensor of its
+// motion, gave it a speed that no correction leads back from.
+TEST(WindowGap, ARunMayBeginAtRest) {
+  size_t free = 0;
+  for (const RunData& one : Windows()) {
+    if (one.begins_within || one.stimulus.shaft != model::Shaft::kFree) continue;
+    if (one.Find(model::Channel::kArmSpeed) != nullptr) continue;
+    ++free;
+    RunData window = diagnose::ThinnedCopy(one);
+    window.start[model::kArmSpeed] = 1e4;
+    window.start_error[model::kArmSpeed] = 1e4;
+    EXPECT_LT(GapOf(Table1With(), window).Typical(), 1.5) << window.name;
+  }
+  EXPECT_GE(free, 1u);
+}
+
 // Tests that an impossible model is not tested, and says nothing.
 TEST(WindowGap, ImpossibleIsNotTested) {
   const model::ModelDescription impossible = Table1With({{"amp.bias", {{"bias", std::nan("")}}, {}}});
