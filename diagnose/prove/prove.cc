@@ -50,7 +50,9 @@ bool DoWindowsShow(ProofSets* sets, size_t with, size_t without) {
 // not both: then the windows do show the effect. Where much more than noise is left, something else is
 // missing. Windows then show whatever stands in for it, so an amount has to exceed its own error.
 size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
-  const bool more_is_missing = TypicalGap((*sets)[proof.best].near) > kMostlyNoise;
+  // Without time to refit what is left, a set without the effect is no judge of it.
+  const bool more_is_missing =
+      !TimeIsUp(sets->context()) && TypicalGap((*sets)[proof.best].near) > kMostlyNoise;
   std::vector<Change> stands_in;
   if (more_is_missing) stands_in = MayBeNone(sets->context(), proof, kOneDeviation);
   for (const Change& change : MayBeNone(sets->context(), proof)) {
