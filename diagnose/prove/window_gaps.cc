@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/turn.h"
+#include "model/terms/state.h"
 
 namespace hydro::diagnose {
 

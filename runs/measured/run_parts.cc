@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -22,6 +23,7 @@ constexpr double kOpenAbove = 0.5;
 
 std::string ShaftsAllowed() {
   std::vector<std::string> names;
+  names.reserve(std::size(kShafts));
   for (const auto& [name, shaft] : kShafts) names.push_back(name);
   return QuotedList(names) +
          ", or a list of what holds from which time on: [{ from = 0, is = \"clamped\", arm_angle = 0.1 }, { "
