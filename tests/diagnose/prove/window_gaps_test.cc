@@ -95,8 +95,8 @@ TEST(WindowGap, ARunMayBeginAtRest) {
     if (one.Find(model::Channel::kArmSpeed) != nullptr) continue;
     ++free;
     RunData window = diagnose::ThinnedCopy(one);
-    window.start[model::kArmSpeed] = 1e4;
-    window.start_error[model::kArmSpeed] = 1e4;
+    window.start[model::kArmSpeed] = 40;
+    window.start_error[model::kArmSpeed] = 0.01;
     EXPECT_LT(GapOf(Table1With(), window).Typical(), 1.5) << window.name;
   }
   EXPECT_GE(free, 1u);
