@@ -168,6 +168,15 @@ void RequireDifferentSamples(const ReadFiles& fitted, const ReadFiles& held_out)
   }
 }
 
+// All runs of the request, each once and with a name of its own.
+void ReadAllRuns(const DiagnoseRequest& request, const UnitSystem& units, ReadFiles* fitted,
+                 ReadFiles* held_out) {
+  *fitted = ReadRuns(request.runs, units);
+  *held_out = ReadRuns(request.held_out, units);
+  RequireDifferentSamples(*fitted, *held_out);
+  TellApart(fitted, held_out);
+}
+
 // Files that RunDiagnosis may write, or remove, in the request's folder.
 constexpr const char* kReportFiles[] = {"report.html", "report.json", "model.toml", "next.toml"};
 
@@ -227,9 +236,8 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const model::ModelDesc
   options.time_limit = request.time_limit;
   options.seed = static_cast<uint64_t>(request.seed);
   report_progress({"reading the runs", 0});
-  ReadFiles fitted = ReadRuns(request.runs, model.units), rest = ReadRuns(request.held_out, model.units);
-  RequireDifferentSamples(fitted, rest);
-  TellApart(&fitted, &rest);
+  ReadFiles fitted, rest;
+  ReadAllRuns(request, model.units, &fitted, &rest);
   std::vector<runs::MeasuredRun>&runs = fitted.runs, &held_out = rest.runs;
   *motor_alone = IsMotorAlone(runs) && (held_out.empty() || IsMotorAlone(held_out));
   try {
@@ -326,9 +334,8 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   RequireJobs(request);
   RequireDifferentFiles(request);
   const model::ModelDescription model = settings::LoadModelFile(request.model);
-  ReadFiles fitted = ReadRuns(request.runs, model.units), held_out = ReadRuns(request.held_out, model.units);
-  RequireDifferentSamples(fitted, held_out);
-  TellApart(&fitted, &held_out);
+  ReadFiles fitted, held_out;
+  ReadAllRuns(request, model.units, &fitted, &held_out);
   std::vector<runs::MeasuredRun>& runs = fitted.runs;
   runs.insert(runs.end(), held_out.runs.begin(), held_out.runs.end());
   for (const runs::MeasuredRun& run : runs) CheckUsable(run);

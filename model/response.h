@@ -73,8 +73,8 @@ struct ResponseOptions {
   ChannelSet channels = {true, true, true, true, true, true};
   double relative_tolerance = 1e-6;
   bool repeated_effects = false;  // as in ActuatorOptions
-  // A simulation with more steps than these and 20000 for each second throws ModelError, so that a far too
-  // stiff model does not take hours.
+  // A simulation with more steps than these and kStepsPerSecond (response_pass.h) throws ModelError, so that
+  // a far too stiff model does not take hours.
   double most_steps_per_sample = 20;
   // Every stride-th sample is read. The command still changes at all samples.
   size_t stride = 1;

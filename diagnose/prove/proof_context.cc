@@ -8,7 +8,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr double kShortestWindow = 60;  // samples
 constexpr double kWindowsPerRun = 4;
 // Stretches of a signal within a search horizon that count as independent of each other.
 constexpr double kIndependentStretches = 10;
@@ -30,7 +29,7 @@ bool TimeIsUp(const ProofContext& context) { return context.time_is_up && contex
 
 double SearchHorizon(const std::vector<const RunData*>& runs) {
   const double shortest = ShortestDuration(runs);
-  const double sampled = kShortestWindow * SampleInterval(runs);
+  const double sampled = kFewestSamplesOfAWindow * SampleInterval(runs);
   return std::max(std::min(std::max(kHorizon, sampled), shortest / kWindowsPerRun), 0.25 * sampled);
 }
 

@@ -37,6 +37,12 @@ bool TimeIsUp(const ProofContext& context);
 inline constexpr int kMostChanges = 3;
 // Below this squared gap on held-out runs, nothing is left to search for.
 inline constexpr double kCloseEnough = 1.25;
+// Squared, in noise units: what a model leaves beside the noise is no larger than the noise itself. A
+// stricter limit makes no sense, because the noise is known to about 10 %, and starts and values are
+// estimates.
+inline constexpr double kNoiseAndAsMuchAgain = 2;
+// Windows of slow recorders are longer: a start of up to five numbers explains much of fewer samples.
+inline constexpr double kFewestSamplesOfAWindow = 60;
 // s. Windows of this length let the arm move and the pressures settle, and are short enough that drift does
 // not drown what is missing. With 2 s, differences between runs drowned a laboratory drive's friction.
 inline constexpr double kHorizon = 0.4;

@@ -19,7 +19,6 @@ constexpr size_t kMostFitted = 9, kMostTold = 20, kMostNear = 32, kMostFar = 6;
 // The number of windows added for each extreme. A valve that opens now and then shows in few windows of a
 // long run: one of each extreme tells a fit that it opens, three judge beyond one window's scatter.
 constexpr size_t kToFitOfAnExtreme = 1, kToJudgeOfAnExtreme = 3;
-constexpr double kFewestSamplesOfAWindow = 60;
 constexpr size_t kFewestOfAThinned = 200;
 constexpr double kWindowsOfARun = 3;
 

@@ -31,8 +31,6 @@ Proof Reported(ProofSets* sets, const Chooser& chooser, size_t best) {
                  {ProofSets::kGiven, values_alone ? best : chooser.BestValues(), best});
 }
 
-// Squared, in noise units. Up to here, what is left beside the noise is no larger than the noise itself.
-constexpr double kMostlyNoise = 2;
 // A standard deviation, as a part of a 95 % interval's half width.
 constexpr double kOneDeviation = 0.51;
 
@@ -52,10 +50,11 @@ bool DoWindowsShow(ProofSets* sets, size_t with, size_t without) {
 size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
   // Without time to refit what is left, a set without the effect is no judge of it.
   const bool more_is_missing =
-      !TimeIsUp(sets->context()) && TypicalGap((*sets)[proof.best].near) > kMostlyNoise;
+      !TimeIsUp(sets->context()) && TypicalGap((*sets)[proof.best].near) > kNoiseAndAsMuchAgain;
+  const std::vector<Change> may_be_none = MayBeNone(sets->context(), proof);
   std::vector<Change> stands_in;
-  if (more_is_missing) stands_in = MayBeNone(sets->context(), proof, kOneDeviation);
-  for (const Change& change : MayBeNone(sets->context(), proof)) {
+  if (more_is_missing && !may_be_none.empty()) stands_in = MayBeNone(sets->context(), proof, kOneDeviation);
+  for (const Change& change : may_be_none) {
     const size_t without = sets->Without(proof.best, change);
     if (without >= sets->size() || without == proof.best) continue;
     sets->RefineForReport(without);  // as well fitted as what it is to replace
@@ -95,7 +94,7 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
     proof = Reported(&sets, chooser, best);
   }
   // At the noise, windows are too short for what is left, if anything is.
-  const bool at_the_noise = TypicalGap(proof.Best().near) < kMostlyNoise;
+  const bool at_the_noise = TypicalGap(proof.Best().near) < kNoiseAndAsMuchAgain;
   return ProvedOnWholeRuns(context, as_given, std::move(proof), at_the_noise, said.unlikely);
 }
 

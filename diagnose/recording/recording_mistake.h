@@ -43,8 +43,7 @@ struct RecordingMistake {
 // a sidecar can name.
 std::vector<RecordingMistake> PossibleMistakes(const runs::MeasuredRun& run);
 
-// The other ways in which the shaft may have been held.
-// An arm that was recorded moving was not held.
+// The other ways in which the shaft may have been held. An arm that was recorded moving was not held.
 std::vector<RecordingMistake> OtherShafts(const runs::MeasuredRun& run, const model::Parameters& parameters);
 
 // How far the arm went, as a part of the volume at mid-stroke; 0 where it was not recorded. An arm that is

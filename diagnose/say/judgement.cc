@@ -16,10 +16,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Squared, in noise units: what a model leaves beside the noise is no larger than the noise itself. A
-// stricter limit makes no sense, because the noise is known to about 10 %, and starts and values are
-// estimates.
-constexpr double kNoiseAndAsMuchAgain = 2;
 // In noise units, over whole runs, which have many residuals: the noise is known to about 10 %.
 constexpr double kWholeRunsAtTheNoise = 1.15;
 // As a fraction of the squared gap above the noise. No machine's equations are true to better than a

@@ -176,14 +176,19 @@ TEST(RunSummaryTest, FaultsAreCounted) {
   EXPECT_EQ(summary.FaultsLeft().size(), 1u);
 }
 
+fault_t ActiveFault(int64_t session, const char* code, const char* source) {
+  fault_t fault{};
+  fault.session = session;
+  fault.code = code;
+  fault.source = source;
+  fault.active = 1;
+  return fault;
+}
+
 // Tests that a fault of another stack is left out, and that the same fault of this stack is not.
 TEST(RunSummaryTest, FaultsOfAnotherStack) {
   RunSummary summary;
-  fault_t fault{};
-  fault.session = 7;
-  fault.source = "plant";
-  fault.code = "other_stack";
-  fault.active = 1;
+  fault_t fault = ActiveFault(7, "other_stack", "plant");
   summary.Add(fault);
   const auto is_foreign = [](int64_t session) { return session == 7; };
   EXPECT_THAT(summary.FaultsLeft(is_foreign), IsEmpty());
@@ -222,11 +227,7 @@ TEST(RunSummaryTest, AFaultThatTwoSeeIsListedOnce) {
 // and is no fault that stays; and that joints without sessions are told apart by their names.
 TEST(RunSummaryTest, ASenderIsItsSession) {
   RunSummary summary;
-  fault_t fault{};
-  fault.session = 7;
-  fault.code = "stale_state";
-  fault.source = "pr%ssure_ctrl";
-  fault.active = 1;
+  fault_t fault = ActiveFault(7, "stale_state", "pr%ssure_ctrl");
   summary.Add(fault);
   fault.source = "pressure_ctrl";
   fault.active = 0;

@@ -149,9 +149,9 @@ TEST(Linearise, EqualsDifferenceQuotientsWithEachEffect) {
 TEST(Linearise, EqualsDifferenceQuotientsWithAllEffects) {
   std::vector<model::EffectDescription> all;
   for (const auto& [id, effect] : SomeOfEach()) {
-    // A model has one kind of accumulator and one kind of one-way valves.
+    // A model has one accumulator, one kind of one-way valves and one torque limit that falls with speed.
     const bool second = id == "accumulator.gas" || id == "valve.pilot_check" || id == "motor.current_limit";
-    if (!second) all.push_back(effect);  // of a kind that a model has once
+    if (!second) all.push_back(effect);
   }
   ExpectDifferenceQuotientsInEveryMode(Table1Model(all));
 }
