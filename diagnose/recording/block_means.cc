@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "base/maths/linear_fit.h"
@@ -11,7 +12,7 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr double kBlock = 0.1;  // s: longer than fast motion
-constexpr size_t kStepsOfABlock = 4, kFewestToFit = 20;
+constexpr size_t kStepsOfABlock = 4, kFewestToFit = 20, kFewestToCorrelate = 6;
 // As a share of the variance: a fit that leaves more says nothing.
 constexpr double kLeaves = 0.2;
 
@@ -71,6 +72,22 @@ std::optional<FittedBlocks> FitBlocks(std::vector<std::vector<double>> columns,
     return std::nullopt;
   }
   return fitted;
+}
+
+std::optional<double> CorrelationOfBlocks(const std::vector<double>& x, const std::vector<double>& y,
+                                          double least) {
+  if (x.size() < kFewestToCorrelate) return std::nullopt;
+  const auto n = static_cast<double>(x.size());
+  const double x_mean = std::accumulate(x.begin(), x.end(), 0.0) / n;
+  const double y_mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
+  double both = 0, of_x = 0, of_y = 0;
+  for (size_t i = 0; i < x.size(); ++i) {
+    both += (x[i] - x_mean) * (y[i] - y_mean);
+    of_x += (x[i] - x_mean) * (x[i] - x_mean);
+    of_y += (y[i] - y_mean) * (y[i] - y_mean);
+  }
+  if (!(std::sqrt(of_x / n) > least)) return std::nullopt;
+  return of_y > 0 ? both / std::sqrt(of_x * of_y) : 0;
 }
 
 std::string WithHalfWidth(double value, double half) {

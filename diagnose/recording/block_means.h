@@ -33,6 +33,11 @@ struct FittedBlocks {
 // that is 0 throughout has the coefficient 0.
 std::optional<FittedBlocks> FitBlocks(std::vector<std::vector<double>> columns, const std::vector<double>& y);
 
+// The correlation of x and y, -1 to 1, and 0 where y never changes. Empty where there are fewer than 6
+// values, and where the standard deviation of x is not above `least`.
+std::optional<double> CorrelationOfBlocks(const std::vector<double>& x, const std::vector<double>& y,
+                                          double least);
+
 // "1.14 +/- 0.0012": no ratio is known to more than three digits, however small the scatter is.
 std::string WithHalfWidth(double value, double half);
 

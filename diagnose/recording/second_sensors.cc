@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "base/text_file.h"
 #include "base/word_list.h"
 #include "diagnose/recording/block_means.h"
 #include "diagnose/recording/run_data.h"
@@ -22,11 +23,14 @@ using Run = runs::MeasuredRun;
 constexpr double kSensorFactor = 0.02;
 // s: a filter's delay.
 constexpr double kSensorLate = 2e-3;
+// A correlation: below it, two columns are not of one quantity.
+constexpr double kSameQuantity = 0.5;
 
 // What two sensors say of one quantity, and of how fast it changes, in consecutive blocks.
 struct SensorBlocks {
   std::vector<double> second, first, rate;
   double step = 0;
+  double first_noise = 0;  // of a sample
 };
 
 // A pair of sensors.
@@ -36,7 +40,9 @@ struct SensorPair {
   const char* what;                // what the first one says
   const char* first_name;
   const char* believed;
-  bool set_aside;  // the second sensor is used for nothing else where it is not believed
+  // Balances use the second sensor: it is set aside where it is not believed, and the search for wrong signs
+  // judges its sign. Of dp, nothing else would say that its sign is wrong or its column another one's.
+  bool set_aside;
 
   bool Have(const Run& run) const {
     return (run.*second).measured() &&
@@ -69,6 +75,9 @@ const std::vector<SensorPair>& SensorPairs() {
 
 void AddSensorBlocks(const SensorPair& pair, const Run& run, SensorBlocks* blocks) {
   blocks->step = std::max(blocks->step, MedianInterval(run.time));
+  double noise = 0;
+  for (const SignalOfRun one : pair.first) noise = std::hypot(noise, EstimateNoise((run.*one).values));
+  blocks->first_noise = std::max(blocks->first_noise, noise);
   for (const RunBlock& block : RunBlocksOf(run)) {
     const size_t quarter = (block.last - block.first) / 4;
     if (block.first < quarter || block.last + quarter >= run.samples()) continue;
@@ -91,15 +100,17 @@ double RootMeanSquare(const std::vector<double>& values) {
 // Whether the factor is known as well as two sensors agree anyway.
 bool IsKnown(const SecondSensor& second) { return second.factor_half < kSensorFactor * second.factor; }
 
-std::optional<SecondSensor> Compared(const SensorBlocks& blocks) {
+std::optional<SecondSensor> Compared(const SensorPair& pair, const SensorBlocks& blocks) {
   const std::optional<FittedBlocks> fit =
       FitBlocks({blocks.first, std::vector<double>(blocks.first.size(), 1.0), blocks.rate}, blocks.second);
-  if (!fit.has_value() || !(fit->value[0] > 0)) return std::nullopt;
+  if (!fit.has_value()) return std::nullopt;
+  const bool inverted = !pair.set_aside && fit->value[0] < -fit->half[0];
+  if (!(fit->value[0] > 0) && !inverted) return std::nullopt;
   const double factor = fit->value[0], offset = fit->value[1];
   // An offset that is small beside the quantity is none.
   const bool off =
       std::abs(offset) > std::max(fit->half[1], kSensorFactor / 2 * RootMeanSquare(blocks.first));
-  const double late = fit->value[2] / factor, late_half = fit->half[2] / factor;
+  const double late = fit->value[2] / factor, late_half = fit->half[2] / std::abs(factor);
   return SecondSensor{.factor = factor,
                       .factor_half = fit->half[0],
                       .offset = off ? offset : 0,
@@ -126,7 +137,8 @@ std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& sec
             runs::UnitIn(run, name) + (second.offset > 0 ? " more" : " less");
   }
   text += std::string(": ") + pair.believed;
-  text += !pair.set_aside   ? ", and dp is only compared with them"
+  text += !pair.set_aside ? std::string(second.factor < 0 ? ", if they are not exchanged" : "") +
+                                ", and dp is only compared with them"
           : IsKnown(second) ? ", and the speed is corrected"
                             : ", and the speed is left out";
   runs::ColumnSource agrees = (run.*pair.second).source;
@@ -134,6 +146,23 @@ std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& sec
   agrees.scale /= second.factor;
   agrees.offset = (agrees.offset - second.offset) / second.factor;
   return text + ". This makes the two agree: " + LineOf(run, pair.second, agrees);
+}
+
+// Of a second sensor that balances do not use, what is wrong where it is not of the same quantity, or goes
+// against it in a run that is too short to compare the two (`second`); else "".
+std::string DoesNotFollow(const SensorPair& pair, const Run& run, const SensorBlocks& blocks,
+                          const std::optional<SecondSensor>& second) {
+  if (pair.set_aside) return "";
+  const std::optional<double> correlation =
+      CorrelationOfBlocks(blocks.first, blocks.second, kHardlyMoves * blocks.first_noise);
+  const double least = second ? -kSameQuantity : -2;
+  if (!correlation.has_value() || *correlation >= kSameQuantity || *correlation <= least) return "";
+  const std::string& column = (run.*pair.second).source.column;
+  return std::string(NameOfSignal(pair.second).ours) + " does not follow " + pair.what + " (correlation " +
+         ShortNumber(*correlation, 2) + "): " + pair.believed + "; is " +
+         (column.empty() ? "it" : "the column " + Quoted(column)) +
+         (*correlation <= -kSameQuantity ? " of the other sign? Then turn that of its scale"
+                                         : " another quantity?");
 }
 
 // The runs whose second sensor is the same column, and what each of them is.
@@ -185,13 +214,19 @@ ComparedSensors CompareSensors(const std::vector<Run>& runs) {
   ComparedSensors compared;
   for (const SensorPair& pair : SensorPairs()) {
     for (const SameSensors& recorder : SensorsOf(pair, runs)) {
-      const std::optional<SecondSensor> second = Compared(recorder.blocks);
+      std::vector<std::string> names;
+      for (const size_t r : recorder.runs) names.push_back(runs[r].name);
+      const Run& one_run = runs[recorder.runs.front()];
+      const std::optional<SecondSensor> second = Compared(pair, recorder.blocks);
+      const std::string other = DoesNotFollow(pair, one_run, recorder.blocks, second);
+      if (!other.empty()) {
+        compared.remarks.push_back(RunsNamed(names, runs.size()) + ": " + other);
+        continue;
+      }
       if (!second) continue;
       const double size = RootMeanSquare(recorder.blocks.first);
       const SensorsDiffer differ = HowTheyDiffer(*second, size, recorder.blocks.step);
-      std::vector<std::string> names;
       for (const size_t r : recorder.runs) {
-        names.push_back(runs[r].name);
         if (!pair.set_aside) continue;
         if (differ == SensorsDiffer::kInSize) {
           compared.unbelieved.push_back({r, pair.second, IsKnown(*second) ? second : std::nullopt});
@@ -200,8 +235,7 @@ ComparedSensors CompareSensors(const std::vector<Run>& runs) {
         }
       }
       if (differ == SensorsDiffer::kNot) continue;
-      compared.remarks.push_back(RunsNamed(names, runs.size()) + ": " +
-                                 Text(pair, runs[recorder.runs.front()], *second, differ));
+      compared.remarks.push_back(RunsNamed(names, runs.size()) + ": " + Text(pair, one_run, *second, differ));
     }
   }
   return compared;

@@ -39,8 +39,8 @@ struct ComparedSensors {
 // Compares the sensors over all runs of a recorder together and says, for each pair that differs, which one
 // is believed, how far the other is off, and what makes the two agree. An angle is believed before a speed,
 // because an angle is counted, whereas a recorded speed has passed through a filter; p1 and p2 before their
-// difference, because the balances need both. Sensors of opposite signs are left to the search for wrong
-// signs.
+// difference, because the balances need both. Speeds of opposite signs are left to the search for wrong
+// signs; no balance uses dp, so a wrong sign of it is said here, and so is a column that is not dp at all.
 ComparedSensors CompareSensors(const std::vector<runs::MeasuredRun>& runs);
 
 // Takes factor, offset and lateness out of the second sensors that are not believed, noise included; without

@@ -185,8 +185,57 @@ TEST(SecondSensors, DifferentialTransducer) {
   EXPECT_THAT(compared.unbelieved, IsEmpty());
 }
 
-// Tests that a wrong sign, a sensor that has nothing to do with the other one, and a motor at rest are left
-// to other checks.
+// Tests that a differential transducer of the wrong sign is said, with the line that mends it, and so is a
+// column that is no dp: noise, another signal or one that does not change.
+TEST(SecondSensors, DpThatIsInvertedOrAnother) {
+  EXPECT_THAT(CompareSensors({SwingOf({{}, {}, {-1, 0, 0}, 2e-3, 2})}).remarks,
+              ElementsAre(AllOf(HasSubstr("dp is -0.99"), HasSubstr("times p2 - p1"),
+                                HasSubstr("if they are not exchanged"),
+                                HasSubstr("dp = { column = \"diff\", scale = -1.0"))));
+  Measured brief = SwingOf({{}, {}, {-1, 0, 0}, 2e-3, 2});
+  brief.Keep(0, 750);
+  EXPECT_THAT(CompareSensors({brief}).remarks,
+              ElementsAre(::testing::ContainsRegex(
+                  "dp does not follow p2 - p1 .correlation -(1|0.99).*: p1 and p2 are "
+                  "believed; is the column \"diff\" of the other sign")));
+  brief = SwingOf({});
+  brief.Keep(0, 750);
+  EXPECT_THAT(CompareSensors({brief}).remarks, IsEmpty());
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal(500, 50);
+  for (const int kind : {0, 1, 2, 3}) {
+    Measured run = SwingOf({});
+    for (size_t k = 0; k < run.samples(); ++k)
+      run.dp.values[k] = kind == 0   ? normal(random)
+                         : kind == 1 ? run.arm_speed.values[k] + 3
+                         : kind == 2 ? 400
+                                     : run.time[k];
+    EXPECT_THAT(CompareSensors({run}).remarks,
+                ElementsAre(AllOf(HasSubstr("run swing: dp does not follow p2 - p1 (correlation "),
+                                  HasSubstr("is the column \"diff\" another quantity?"))))
+        << kind;
+  }
+}
+
+// Tests that nothing is said of a dp beside pressures that hardly move, or of a noisy or late one.
+TEST(SecondSensors, DpThatMayBeRight) {
+  Measured rest = SwingOf({});
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0, 1.5);
+  for (size_t k = 0; k < rest.samples(); ++k) {
+    rest.p1.values[k] = 300 + normal(random);
+    rest.p2.values[k] = 320 + normal(random);
+    rest.dp.values[k] = 20 + normal(random);
+  }
+  EXPECT_THAT(CompareSensors({rest}).remarks, IsEmpty());
+  Measured noisy = SwingOf({});
+  for (double& value : noisy.dp.values) value += 100 * normal(random);
+  for (const std::string& said : CompareSensors({noisy}).remarks)
+    EXPECT_THAT(said, ::testing::Not(HasSubstr("does not follow")));
+}
+
+// Tests that a speed of the wrong sign, one that has nothing to do with its angle, and a motor at rest are
+// left to other checks.
 TEST(SecondSensors, LeavesTheRest) {
   EXPECT_THAT(CompareSensors({SwingOf({{-1, 0, 0}, {}, {}, 2e-3, 2})}).remarks, IsEmpty());
   Measured noise = SwingOf({});
