@@ -14,6 +14,7 @@
 #include "diagnose/recording/recording_remarks.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/second_sensors.h"
+#include "diagnose/recording/sparse_columns.h"
 #include "diagnose/recording/vacuum.h"
 
 namespace hydro::diagnose {
@@ -163,6 +164,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
     RequireArmInStroke(run, model.parameters);
   }
   checked.load = LoadRemark(all);
+  checked.damage = SparseSensorRemarks(all);
   AddVacuumRemarks(model, all, &checked.vacuum, &checked.nearly);
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> repeats = SetAsideRepeats(some);

@@ -20,7 +20,7 @@ struct CheckedRecordings {
   // Factors that match no known unit, one line each. Oil or a hose may look like such a factor, so the search
   // goes on.
   std::vector<std::string> factors;
-  std::vector<std::string> damage;    // dropouts, spikes, cuts: one line each
+  std::vector<std::string> damage;    // values that are lost, dropouts, spikes, cuts: one line each
   std::vector<std::string> repeats;   // slow sensors that repeat their values: one line each
   std::string load;                   // LoadRemark()
   std::vector<std::string> ratios;    // RatioRemarks()

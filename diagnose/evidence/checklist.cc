@@ -12,6 +12,7 @@
 #include "diagnose/evidence/run_mistakes.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
+#include "diagnose/recording/sparse_columns.h"
 #include "diagnose/recording/vacuum.h"
 #include "model/sides.h"
 #include "runs/measured/measured_run.h"
@@ -101,6 +102,10 @@ class RunChecklist {
     if (name.signal == &MeasuredRun::p1 || name.signal == &MeasuredRun::p2) {
       const std::optional<BelowVacuum> below = FindBelowVacuum(model_, signal);
       if (below) doubt = "; " + diagnose::Text(*below, factor, unit);
+    }
+    if (name.standard_deviation != nullptr) {
+      const std::string uneven = UnevenlyMissing(run_.time, signal.values, kSlowerSensor);
+      if (!uneven.empty()) doubt += ": " + uneven;
     }
     Add(doubt.empty() ? State::kGood : State::kLook, runs::KeyIn(run_, name),
         Text(range, unit, MissingIn(signal.values)) + doubt);

@@ -10,6 +10,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/noise_remarks.h"
 #include "diagnose/recording/sample_interval.h"
+#include "diagnose/recording/sparse_columns.h"
 #include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kMostSaturated = 0.01;  // share of a signal's samples
 constexpr double kMostMissing = 0.05;    // of a signal that is usually present
-constexpr double kSlowerSensor = 0.5;    // if more is missing, it is a slower sensor
 constexpr double kCoarseStep = 2;        // resolution, in standard deviations of the noise
 
 std::string InPercent(double share) { return ShortNumber(100 * share, 3) + " %"; }

@@ -1,0 +1,22 @@
+// Columns of which most rows are empty: those of a slower sensor are evenly so, others have lost values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runs/measured/measured_run.h"
+
+namespace hydro::diagnose {
+
+// "missing in 80 % of the rows, and not evenly, as of a slower sensor" where more than the share `most` of
+// the values is missing and at least 5 % of the run lacks them at the rate that they have elsewhere; else "".
+// A sensor may be even in rows or in time, as in a table that joins two devices.
+std::string UnevenlyMissing(const std::vector<double>& time, const std::vector<double>& values, double most);
+// Of a sensor that lacks less, what is missing is missing (recording_remarks.h).
+inline constexpr double kSlowerSensor = 0.5;
+
+// One line for each sensor of which that is so. The runs are as read: what later counts as missing, because
+// it repeats itself, is not.
+std::vector<std::string> SparseSensorRemarks(const std::vector<runs::MeasuredRun>& runs);
+
+}  // namespace hydro::diagnose
