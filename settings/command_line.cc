@@ -51,11 +51,19 @@ double Number(const std::string& name, const std::string& text) {
   return value;
 }
 
+// What is beyond a number's bits is told them.
 template <class Whole>
-Whole WholeNumber(const std::string& name, const std::string& text) {
+Whole WholeNumber(const std::string& name, const std::string& text,
+                  Whole least = std::numeric_limits<Whole>::min()) {
   Whole value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) {
+    Refuse(name, text,
+           "a whole number from " + std::to_string(least) + " to " +
+               std::to_string(std::numeric_limits<Whole>::max()));
+  }
   if (error != std::errc() || end != text.data() + text.size()) Refuse(name, text, "a whole number");
+  if (value < least) Refuse(name, text, "a whole number of at least " + std::to_string(least));
   return value;
 }
 
@@ -229,9 +237,7 @@ void CommandLine::AddCommon(CommonOptions* options, bool config_required) {
       });
   add("--seed", "N seed of the measurement noise; as --set noise.seed=N",
       [](const std::string& name, const std::string& text) {
-        const int64_t seed = WholeNumber<int64_t>(name, text);
-        if (seed < 0) Refuse(name, text, "a whole number of at least 0");
-        return "noise.seed=" + std::to_string(seed);
+        return "noise.seed=" + std::to_string(WholeNumber<int64_t>(name, text, 0));
       });
   add("--joint",
       "NAME of a configuration with [[joint]] sections, the stack of this joint; as --set joint=NAME",
@@ -260,12 +266,15 @@ void CommandLine::AddOption(const std::string& names, double* target, const std:
 }
 
 void CommandLine::AddOption(const std::string& names, int* target, const std::string& help, bool required) {
-  impl_->Add(names, target, help, required, WholeNumber<int>);
+  impl_->Add(names, target, help, required,
+             [](const std::string& name, const std::string& text) { return WholeNumber<int>(name, text); });
 }
 
 void CommandLine::AddOption(const std::string& names, int64_t* target, const std::string& help,
                             bool required) {
-  impl_->Add(names, target, help, required, WholeNumber<int64_t>);
+  impl_->Add(names, target, help, required, [](const std::string& name, const std::string& text) {
+    return WholeNumber<int64_t>(name, text);
+  });
 }
 
 void CommandLine::AddOption(const std::string& names, std::vector<std::string>* target,
