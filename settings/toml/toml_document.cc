@@ -10,7 +10,7 @@
 #include "base/file_kind.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "settings/toml/section_reader.h"
+#include "settings/toml/defined_twice.h"
 
 namespace hydro::settings {
 namespace {
@@ -229,6 +229,8 @@ TomlNode ParseToml(const std::string& text, const std::string& name) {
           "hydro-log import makes a log of export's columns");
     }
     std::string description(error.description());
+    if (description.find("cannot redefine existing") != std::string::npos)
+      RefuseSecondDefinition(text, name, error.source().begin.line);
     std::replace_if(
         description.begin(), description.end(), [](unsigned char c) { return c < 0x20; }, ' ');
     throw InputError(name + ":" + std::to_string(error.source().begin.line) + ": syntax: " + description);

@@ -37,6 +37,21 @@ TEST(TomlDocumentTest, RefusesWhatIsNotToml) {
   }
 }
 
+// Tests that what a file defines twice is named as it stands there, with the line that has it first.
+TEST(TomlDocumentTest, RefusesWhatIsDefinedTwice) {
+  const auto error = [](const std::string& text) { return InputErrorOf([&] { ParseToml(text, "m.toml"); }); };
+  EXPECT_EQ(error("[effects.\"pump.stribeck\"]\nspeed = 3\n\n[ effects.\"pump.stribeck\" ] # again\n"),
+            "m.toml:4: syntax: found [effects.\"pump.stribeck\"] again, which line 1 has, allowed each "
+            "section once: write the keys of both in one");
+  EXPECT_EQ(error("[a]\nb = 1\n[c]\nb = 1\n b= 2\n"),
+            "m.toml:5: syntax: found b again, which line 4 has, allowed each key once: leave one of the two "
+            "out");
+  for (const char* text : {"p.a = 1\np = 1\n", "\np = {a = 1, a = 2}\n", "[q]\n[[q]]\n"}) {
+    EXPECT_EQ(error(text),
+              "m.toml:2: syntax: found what the file has already, allowed each key and each section once");
+  }
+}
+
 // Tests that a file of another program is told what it is and who reads it, instead of which of its bytes is
 // no TOML.
 TEST(TomlDocumentTest, FilesOfOtherPrograms) {
