@@ -32,6 +32,10 @@ int Run(hydro::experiments::ExperimentRequest& request) {
     throw hydro::InputError("--machines: found " + std::to_string(request.options.machines) +
                             ", allowed 20 to 1000000");
   }
+  if (request.options.seed < 0) {
+    throw hydro::InputError("--seed: found " + std::to_string(request.options.seed) +
+                            ", allowed a whole number of at least 0");
+  }
   if (request.real_time) {
     request.options.run_stack = hydro::experiments::SeparateProcesses(
         std::filesystem::read_symlink("/proc/self/exe").parent_path(), request.folder + "/runs");

@@ -66,6 +66,7 @@ class ExperimentTest(stack.TestCase):
             (["fig3", "--jobs", "0"], r"--jobs"),
             (["fig3", "--seed", "x"], r"--seed"),
             (["fig3", "--machines", "50"], r"--machines.*fig3.*fig10_uncertainty, all"),
+            (["fig4", "--seed", "-1"], r"--seed: found -1, allowed a whole number of at least 0"),
             (["fig10_uncertainty", "--machines", "3"], r"--machines.*3.*20 to 1000000"),
             (["friction", "--run", self.path("none.csv")], r"none\.csv"),
         ]:
