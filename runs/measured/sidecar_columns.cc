@@ -32,13 +32,19 @@ std::string ColumnsOf(const tables::Table& table) {
   return "a column of " + table.file + ": " + QuotedList(table.names);
 }
 
+// The units that a column may have, for messages.
+std::string UnitsAllowed(const std::string& key, const std::string& ours) {
+  const std::vector<std::string> units = UnitsLike(ours);
+  return units.empty() ? "none: " + key + " is a number without a unit" : QuotedList(units);
+}
+
 // The factor to `ours` of the unit that an entry states; 1 where it states none.
 double ReadUnit(settings::SectionReader& section, const std::string& key, const std::string& ours) {
   std::string unit;
   if (!section.Text("unit", &unit)) return 1;
   const std::optional<double> factor = UnitFactor(unit, ours);
   if (factor.has_value()) return *factor;
-  std::string allowed = QuotedList(UnitsLike(ours));
+  std::string allowed = UnitsAllowed(key, ours);
   const std::string meant = UnitMeant(unit, ours);
   if (key == "voltage" && ours == "V")
     allowed += ", or no unit for a command that is not a voltage; a current may have the key current";
@@ -62,9 +68,11 @@ double UnitOfRow(const settings::SectionReader& columns, const std::string& key,
   if (!StatesUnit(column)) return 1;
   const std::optional<double> factor = UnitFactor(column.unit, ours);
   if (factor.has_value()) return *factor;
-  throw columns.Error(key, "the unit " + Quoted(column.unit) + " in the table's row of units",
-                      QuotedList(UnitsLike(ours)) + " there, or { column = " + Quoted(column.name) +
-                          ", ... } with a unit or a scale (scale = 1 for numbers in " + ours + ")");
+  const std::string allowed =
+      ours == "1" ? "none there, or { column = " + Quoted(column.name) + ", scale = 1 }"
+                  : QuotedList(UnitsLike(ours)) + " there, or { column = " + Quoted(column.name) +
+                        ", ... } with a unit or a scale (scale = 1 for numbers in " + ours + ")";
+  throw columns.Error(key, "the unit " + Quoted(column.unit) + " in the table's row of units", allowed);
 }
 
 // The column of that name. `key` is the key that requires it.

@@ -92,6 +92,10 @@ TEST_F(SidecarTest, WrongUnits) {
               HasSubstr(R"(allowed "m", "cm", "mm", "in" or "ft")"));
   EXPECT_THAT(ErrorOf("pressure_ref = { column = \"p\", unit = \"N m\" }"),
               HasSubstr("no unit of pressure_ref"));
+  EXPECT_THAT(
+      ErrorOf("bypass = { column = \"p\", unit = \"V\" }"),
+      ::testing::EndsWith("columns.bypass.unit: found \"V\", no unit of bypass, allowed none: bypass is "
+                          "a number without a unit"));
 }
 
 // Tests that the refusal of an unknown key names every key that [columns] may have, with either command.
@@ -177,6 +181,10 @@ TEST_F(SidecarTest, RowOfUnits) {
           HasSubstr(Path("run.toml") + ":5: columns.p1: found the unit \"psig\" in the table's row of units"),
           HasSubstr("{ column = \"p\", ... } with a unit or a scale (scale = 1 for numbers in Pa)")));
   EXPECT_THAT(log::InputErrorOf([&] { read("ms,V,rpm", "\"p\""); }), HasSubstr("found the unit \"rpm\""));
+  EXPECT_THAT(
+      log::InputErrorOf([&] { read("ms,V,V", "{ column = \"p\", scale = 1 }\nbypass = \"p\""); }),
+      ::testing::EndsWith("in the table's row of units, allowed none there, or { column = \"p\", scale = "
+                          "1 }"));
 }
 
 // Tests that a log comes in its model's units, is converted to those asked for, and is refused where its arm
