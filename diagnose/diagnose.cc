@@ -184,7 +184,7 @@ PreparedRuns Prepare(const model::ModelDescription& model, int jobs, std::vector
   for (const auto& [recorded, to] :
        {std::pair(&runs, &prepared.fitted), std::pair(&held_out, &prepared.held_out)}) {
     for (const runs::MeasuredRun& run : *recorded)
-      to->push_back(PrepareAligned(run, std::move(*next++), model.parameters, &prepared.clocks));
+      to->push_back(PrepareAligned(run, std::move(*next++), model, &prepared.clocks));
   }
   if (!prepared.fitted.empty()) prepared.fitted.front().angle_counts = true;
   MakeNamesUnique(&prepared.fitted);

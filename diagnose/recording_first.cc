@@ -161,7 +161,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   all.insert(all.end(), held_out->begin(), held_out->end());
   for (const runs::MeasuredRun& run : all) {
     CheckUsable(run);
-    RequireArmInStroke(run, model.parameters);
+    RequireArmInStroke(run, model);
   }
   checked.load = LoadRemark(all);
   checked.damage = SparseSensorRemarks(all);
@@ -169,7 +169,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> repeats = SetAsideRepeats(some);
     checked.repeats.insert(checked.repeats.end(), repeats.begin(), repeats.end());
-    const std::vector<std::string> damage = SetAsideDamage(model.parameters, some);
+    const std::vector<std::string> damage = SetAsideDamage(model, some);
     checked.damage.insert(checked.damage.end(), damage.begin(), damage.end());
   }
   all = *runs;
@@ -271,7 +271,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   std::vector<RunData> prepared;
   prepared.reserve(runs.size());
   for (size_t r = 0; r < runs.size(); ++r)
-    prepared.push_back(PrepareAligned(runs[r], std::move(checked.aligned[r]), model.parameters, &clocks));
+    prepared.push_back(PrepareAligned(runs[r], std::move(checked.aligned[r]), model, &clocks));
   MakeNamesUnique(&prepared);
   const std::vector<const RunData*> pointers = PointersTo(prepared);
   // As for runs that are not fitted: what their motion does not show is no fault of the recording.

@@ -105,7 +105,7 @@ std::vector<AlignedRun> AlignedRuns(const model::ModelDescription& given, const 
   return aligned;
 }
 
-RunData PrepareAligned(const Run& recorded, AlignedRun aligned, const model::Parameters& given,
+RunData PrepareAligned(const Run& recorded, AlignedRun aligned, const model::ModelDescription& given,
                        std::vector<ClockDelay>* delays) {
   const std::vector<ClockDelay>& found = aligned.clocks;
   if (!found.empty()) PrepareRun(recorded, given);  // so that errors name the rows of the recording

@@ -38,7 +38,7 @@ std::vector<AlignedRun> AlignedRuns(const model::ModelDescription& given,
 // Calls PrepareRun for the aligned run and appends its clocks to `delays`. If there are any, a signal is no
 // more certain than its timing: the change within the standard error of the delays counts as noise.
 // `recorded` is the run before alignment; errors name its rows.
-RunData PrepareAligned(const runs::MeasuredRun& recorded, AlignedRun aligned, const model::Parameters& given,
-                       std::vector<ClockDelay>* delays);
+RunData PrepareAligned(const runs::MeasuredRun& recorded, AlignedRun aligned,
+                       const model::ModelDescription& given, std::vector<ClockDelay>* delays);
 
 }  // namespace hydro::diagnose

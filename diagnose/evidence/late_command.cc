@@ -85,7 +85,7 @@ std::optional<LateCommand> LateIn(const model::ModelDescription& given, const Ru
   const double step = MedianInterval(recorded.time);
   Run run = recorded;
   if (!runs::RemoveDelays({{&Run::voltage, moved * step}}, &run)) return std::nullopt;
-  const RunData data = PrepareRun(std::move(run), given.parameters);
+  const RunData data = PrepareRun(std::move(run), given);
   ScanOptions options;
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) options.allowed.push_back(i);
   options.only_always = true;

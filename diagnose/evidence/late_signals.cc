@@ -131,7 +131,7 @@ class ClockSteps {
     const auto last = std::upper_bound(moved.time.begin(), moved.time.end(), to + 0.5 * step_);
     moved.Keep(static_cast<size_t>(first - moved.time.begin()),
                static_cast<size_t>(last - moved.time.begin()));
-    return PrepareRun(std::move(moved), given_.parameters);
+    return PrepareRun(std::move(moved), given_);
   }
 
   LateSignals At(double highest) const {

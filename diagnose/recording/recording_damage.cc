@@ -195,8 +195,8 @@ bool TurnsAtHeldSpeed(const Run& run, const runs::SignalName& sensor, const Stre
 }
 
 // Makes held values and spikes missing, and counts for each row how many sensors hold their value there.
-void SetAside(const model::Parameters& model, Run* run, std::vector<size_t>* held_there, size_t* sensors,
-              std::vector<std::string>* lines) {
+void SetAside(const model::ModelDescription& model, Run* run, std::vector<size_t>* held_there,
+              size_t* sensors, std::vector<std::string>* lines) {
   for (const runs::SignalName& sensor : runs::kSignals) {
     if (sensor.standard_deviation == nullptr) continue;  // not a sensor's signal
     std::vector<double>& values = (run->*sensor.signal).values;
@@ -288,7 +288,7 @@ std::vector<Run> Cut(const Run& run, const std::vector<Stretch>& lost, std::vect
 
 }  // namespace
 
-std::vector<std::string> SetAsideDamage(const model::Parameters& model, std::vector<Run>* runs) {
+std::vector<std::string> SetAsideDamage(const model::ModelDescription& model, std::vector<Run>* runs) {
   std::vector<std::string> lines;
   std::vector<Run> all;
   for (Run& run : *runs) {

@@ -18,6 +18,7 @@ namespace hydro::diagnose {
 // slow sensor and the end of a sensor's range do not count as held, nor does most of a run during which the
 // command does not change either. A spike is a single sample far outside all of its neighbours, or one of a
 // few cells with a value that no sensor of the machine reads.
-std::vector<std::string> SetAsideDamage(const model::Parameters& model, std::vector<runs::MeasuredRun>* runs);
+std::vector<std::string> SetAsideDamage(const model::ModelDescription& model,
+                                        std::vector<runs::MeasuredRun>* runs);
 
 }  // namespace hydro::diagnose

@@ -9,6 +9,7 @@
 #include "base/text_file.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
+#include "model/sides.h"
 #include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
@@ -35,15 +36,25 @@ constexpr const runs::SignalName* kSignalRows[model::kChannels] = {
                    allowed);
 }
 
-// The arm's angle at which V_1 or V_2 is 0, eqs. (6), (7).
-double StrokeOf(const model::Parameters& model) { return model.V_ms / model.c; }
+maths::Range UpTo(double size) { return {-size, size}; }
+
+// The arm's angles at which V_1 or V_2 is 0, eqs. (6), (7).
+maths::Range StrokeOf(const model::ModelDescription& model) {
+  const model::Travel travel = model::TravelOf(model);
+  return {travel.least, travel.most};
+}
+
+std::string AnglesWithin(const maths::Range& stroke, const std::string& unit) {
+  return "angles between " + ShortestNumber(stroke.low) + " and " + ShortestNumber(stroke.high) + " " + unit +
+         ", where the model's V_1 and V_2 are above 0";
+}
 
 void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std::vector<double>& values,
-                double limit, const std::string& unit) {
+                const maths::Range& allowed, const std::string& unit) {
   for (size_t i = 0; i < values.size(); ++i) {
-    if (std::isnan(values[i]) || std::abs(values[i]) <= limit) continue;
+    if (std::isnan(values[i]) || (values[i] >= allowed.low && values[i] <= allowed.high)) continue;
     Refuse(run.Place(i), name, ShortestNumber(values[i]) + " " + unit,
-           "-" + ShortestNumber(limit) + " to " + ShortestNumber(limit) +
+           ShortestNumber(allowed.low) + " to " + ShortestNumber(allowed.high) +
                " with this model: is the column in another unit?");
   }
 }
@@ -134,19 +145,17 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
 
 // The imposed motion of a driven shaft.
 std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& run,
-                                                      const model::Parameters& model) {
+                                                      const model::ModelDescription& model) {
   const SignalData angle = MakeSignal(run, model::Channel::kArmAngle);
   SignalData speed;
   if (run.arm_speed.measured()) speed = MakeSignal(run, model::Channel::kArmSpeed);
   std::unique_ptr<trajectory::Trajectory> motion =
       SmoothMotion(run.time, angle.values, angle.noise, speed.values, speed.noise);
-  const double stroke = StrokeOf(model);
+  const maths::Range stroke = StrokeOf(model);
   const std::string unit = ChannelUnit(model::Channel::kArmAngle, run.units);
   CheckRange(run, "arm_angle", angle.values, stroke, unit);
-  if (std::max(-motion->Min(), motion->Max()) >= stroke) {
-    Refuse(run.file, "arm_angle", "a motion that reaches the end of the stroke",
-           "angles between -" + ShortestNumber(stroke) + " and " + ShortestNumber(stroke) + " " + unit +
-               ", where the model's V_1 and V_2 are above 0");
+  if (motion->Min() <= stroke.low || motion->Max() >= stroke.high) {
+    Refuse(run.file, "arm_angle", "a motion that reaches the end of the stroke", AnglesWithin(stroke, unit));
   }
   return motion;
 }
@@ -184,14 +193,15 @@ std::vector<model::Surroundings> SurroundingsOf(const runs::MeasuredRun& run) {
 
 }  // namespace
 
-double LargestPossible(const runs::SignalName& row, const model::Parameters& model) {
+double LargestPossible(const runs::SignalName& row, const model::ModelDescription& model) {
   const std::string name = row.ours;
-  const double stroke = StrokeOf(model);
+  const maths::Range within = StrokeOf(model);
+  const double stroke = std::max(-within.low, within.high);
   if (name == "motor_speed") return 1e5;  // rad/s in every coherent system
   if (name == "motor_angle") return 1e9;
   if (name == "arm_angle") return 2 * stroke;
   if (name == "arm_speed") return 1000 * stroke;
-  return model.beta / 2;  // the oil at half its volume, eq. (5)
+  return model.parameters.beta / 2;  // the oil at half its volume, eq. (5)
 }
 
 const runs::SignalName& SignalOf(model::Channel channel) {
@@ -329,15 +339,14 @@ void RequirePossibleSamples(const runs::MeasuredRun& run) {
 
 }  // namespace
 
-void RequireArmInStroke(const runs::MeasuredRun& run, const model::Parameters& model) {
-  const double stroke = StrokeOf(model);
-  if (run.shaft != model::Shaft::kClamped || std::abs(run.arm_angle_rad) < stroke) return;
+void RequireArmInStroke(const runs::MeasuredRun& run, const model::ModelDescription& model) {
+  const maths::Range stroke = StrokeOf(model);
+  const bool within = run.arm_angle_rad > stroke.low && run.arm_angle_rad < stroke.high;
+  if (run.shaft != model::Shaft::kClamped || within) return;
   const std::string unit = ChannelUnit(model::Channel::kArmAngle, run.units);
   Refuse(run.sidecar.empty() ? run.file : run.sidecar,
          run.units.linear_arm ? "arm_angle" : "arm_angle or arm_angle_rad",
-         ShortestNumber(run.arm_angle_rad) + " " + unit + " of a clamped shaft",
-         "angles between -" + ShortestNumber(stroke) + " and " + ShortestNumber(stroke) + " " + unit +
-             ", where the model's V_1 and V_2 are above 0");
+         ShortestNumber(run.arm_angle_rad) + " " + unit + " of a clamped shaft", AnglesWithin(stroke, unit));
 }
 
 void CheckUsable(const runs::MeasuredRun& run) {
@@ -353,7 +362,7 @@ void CheckUsable(const runs::MeasuredRun& run) {
   }
 }
 
-RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
+RunData PrepareRun(runs::MeasuredRun run, const model::ModelDescription& model) {
   CheckUsable(run);
   runs::RequireFastSamples(run);
   RequirePossibleSamples(run);
@@ -363,13 +372,13 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   data.stimulus = StimulusOf(run);
   // A thousand times the voltage that saturates the amplifier, eq. (1).
   const runs::SignalName& command = runs::kSignals.front();
-  CheckRange(run, runs::KeyIn(run, command), run.voltage.values, 1000 * model.T_pmax / model.k_1,
-             runs::UnitIn(run, command));
+  CheckRange(run, runs::KeyIn(run, command), run.voltage.values,
+             UpTo(1000 * model.parameters.T_pmax / model.parameters.k_1), runs::UnitIn(run, command));
   for (size_t place = 0; place < model::kChannels; ++place) {
     const auto channel = static_cast<model::Channel>(place);
     const runs::SignalName& row = SignalOf(channel);
     if ((run.*row.signal).measured()) {
-      CheckRange(run, row.ours, (run.*row.signal).values, LargestPossible(row, model),
+      CheckRange(run, row.ours, (run.*row.signal).values, UpTo(LargestPossible(row, model)),
                  run.units.UnitFor(row.unit, row.arm));
     }
     if (!IsCompared(run, channel)) continue;
@@ -385,7 +394,7 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
     data.motion = ImposedMotion(run, model);
     data.stimulus.motion = data.motion.get();
   }
-  SetStart(model, &data);
+  SetStart(model.parameters, &data);
   data.measured = std::move(run);
   return data;
 }

@@ -70,7 +70,7 @@ const runs::SignalName& SignalOf(model::Channel channel);
 bool IsCompared(const runs::MeasuredRun& run, model::Channel channel);
 // The size that no reading of a channel's sensor exceeds, in the model's own units: at least twice what the
 // model's equations could produce, so that only a wrong unit or a damaged cell does, and no wrong parameter.
-double LargestPossible(const runs::SignalName& row, const model::Parameters& model);
+double LargestPossible(const runs::SignalName& row, const model::ModelDescription& model);
 // The number of values that are not missing.
 size_t CountValid(const std::vector<double>& values);
 // The same over all signals that are compared.
@@ -99,11 +99,17 @@ inline constexpr size_t kFewestSamples = 100;
 void CheckUsable(const runs::MeasuredRun& run);
 
 // Throws InputError, with the sidecar and its key, when a clamped arm is held where the model has no volume.
-void RequireArmInStroke(const runs::MeasuredRun& run, const model::Parameters& model);
+void RequireArmInStroke(const runs::MeasuredRun& run, const model::ModelDescription& model);
 
 // Throws InputError as CheckUsable() and RequireArmInStroke() do, and also when no signal can be compared
 // with a model, or when times or values are impossible (speeds of 1e5 rad/s point to another unit).
-RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model);
+RunData PrepareRun(runs::MeasuredRun run, const model::ModelDescription& model);
+// The same for a model without effects, whose sides are equal.
+inline RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
+  model::ModelDescription plain;
+  plain.parameters = model;
+  return PrepareRun(std::move(run), plain);
+}
 
 // Sets the run's start and start_free from its first samples. All other members of `data` must already be
 // filled in.

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -168,6 +169,35 @@ TEST(PrepareRun, RefusesAnArmBeyondItsStroke) {
                                                       std::string(angle > 0 ? "10" : "-10") +
                                                       " rad of a clamped shaft, allowed angles between -"));
   EXPECT_EQ(held_at(-0.2), "no error");
+}
+
+// Tests that of a cylinder with unequal areas each end of the stroke is its own side's: V_ms/c_1 up, and
+// V_ms/c_2 down. For each, the mean's stroke would do the opposite of what is right.
+TEST(PrepareRun, EachSideHasItsOwnStroke) {
+  model::ModelDescription rod = {"rod", testing::Table1(), {}};
+  rod.effects = {{.id = "actuator.unequal_areas", .parameters = {{"difference", 0.3}}, .names = {}}};
+  const double mean = rod.parameters.V_ms / rod.parameters.c;
+  const auto refused = [&](double part) {
+    runs::MeasuredRun run = Clamped();
+    run.arm_angle_rad = part * mean;
+    try {
+      PrepareRun(run, rod);
+    } catch (const InputError&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refused(1.35));
+  EXPECT_TRUE(refused(1.45));
+  EXPECT_FALSE(refused(-0.75));
+  EXPECT_TRUE(refused(-0.8));
+  runs::MeasuredRun driven = WithArm(model::Shaft::kDriven);
+  const double bottom = std::ranges::min(driven.arm_angle.values);
+  const double swing = 1.2 * mean / (std::ranges::max(driven.arm_angle.values) - bottom);
+  for (double& angle : driven.arm_angle.values) angle = -0.2 * mean + swing * (angle - bottom);
+  EXPECT_NO_THROW(PrepareRun(driven, rod)) << "up to the mean's stroke";
+  for (double& angle : driven.arm_angle.values) angle -= 0.65 * mean;
+  EXPECT_THROW(PrepareRun(driven, rod), InputError) << "down to 0.85 of it";
 }
 
 // Tests that a free arm is compared, and starts at a speed from the angle's slope.

@@ -101,7 +101,7 @@ TEST(Alignment, LeavesTheRestToTheSearch) {
 }
 
 RunData Prepared(const runs::MeasuredRun& run, std::vector<ClockDelay>* clocks) {
-  return PrepareAligned(run, AlignedRuns(Table1With(), {run}, 1).front(), Table1With().parameters, clocks);
+  return PrepareAligned(run, AlignedRuns(Table1With(), {run}, 1).front(), Table1With(), clocks);
 }
 
 // Tests that pieces put on one clock claim no more certainty than that allows.

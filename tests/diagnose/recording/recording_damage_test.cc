@@ -39,7 +39,7 @@ size_t Missing(const std::vector<double>& values) {
 }
 
 std::vector<std::string> LinesOf(std::vector<runs::MeasuredRun>* runs) {
-  return SetAsideDamage(testing::Table1(), runs);
+  return SetAsideDamage({"Table 1", testing::Table1(), {}}, runs);
 }
 
 // Tests that a sound recording stays as it is, quantised pressures included.
