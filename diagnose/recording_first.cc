@@ -165,6 +165,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   }
   checked.load = LoadRemark(all);
   checked.damage = SparseSensorRemarks(all);
+  AddCommandRemarks(all, &checked.damage, &checked.repeats);
   AddVacuumRemarks(model, all, &checked.vacuum, &checked.nearly);
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> repeats = SetAsideRepeats(some);

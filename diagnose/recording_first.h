@@ -21,7 +21,7 @@ struct CheckedRecordings {
   // goes on.
   std::vector<std::string> factors;
   std::vector<std::string> damage;    // values that are lost, dropouts, spikes, cuts: one line each
-  std::vector<std::string> repeats;   // slow sensors that repeat their values: one line each
+  std::vector<std::string> repeats;   // slow sensors that repeat their values, commands written at changes
   std::string load;                   // LoadRemark()
   std::vector<std::string> ratios;    // RatioRemarks()
   std::vector<std::string> vacuum;    // pressures below absolute zero that noise does not explain

@@ -95,20 +95,20 @@ class RunChecklist {
       range = {range.low * factor, range.high * factor};
       unit = shown->to;
     }
-    if (name.signal == &MeasuredRun::voltage)
-      unit = runs::UnitIn(run_, name) + " (the command that k_1 takes)";
-    const bool moves = range.high > range.low;
-    std::string doubt = moves ? "" : ": it never changes";
+    const bool command = name.signal == &MeasuredRun::voltage;
+    if (command) unit = runs::UnitIn(run_, name) + " (the command that k_1 takes)";
+    std::string doubt = range.high > range.low ? "" : ": it never changes";
     if (name.signal == &MeasuredRun::p1 || name.signal == &MeasuredRun::p2) {
       const std::optional<BelowVacuum> below = FindBelowVacuum(model_, signal);
       if (below) doubt = "; " + diagnose::Text(*below, factor, unit);
     }
-    if (name.standard_deviation != nullptr) {
-      const std::string uneven = UnevenlyMissing(run_.time, signal.values, kSlowerSensor);
-      if (!uneven.empty()) doubt += ": " + uneven;
-    }
+    const bool sensor = name.standard_deviation != nullptr;
+    const std::string uneven = command  ? UnevenCommands(run_)
+                               : sensor ? UnevenlyMissing(run_.time, signal.values, kSlowerSensor)
+                                        : "";
+    if (!uneven.empty()) doubt += (doubt.empty() ? ": " : "; ") + uneven;
     Add(doubt.empty() ? State::kGood : State::kLook, runs::KeyIn(run_, name),
-        Text(range, unit, MissingIn(signal.values)) + doubt);
+        Text(range, unit, MissingIn(command ? run_.written_commands : signal.values)) + doubt);
   }
 
   // The lowest pressure of a closed circuit is its charge pressure, whatever moves.

@@ -10,7 +10,7 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr double kMostLacking = 0.05;  // share of a run
+constexpr double kMostLacking = 0.05;  // share of a run, and of its commands
 constexpr double kUsualJitter = 1.5;   // intervals: what is later than this is late by what is lacking
 
 // The share of first to last that lacks values at the usual distance of these places.
@@ -25,6 +25,19 @@ double Lacking(const std::vector<double>& places, double first, double last) {
   double lacking = 0;
   for (const double one : intervals) lacking += one > kUsualJitter * usual ? one - usual : 0;
   return lacking / (last - first);
+}
+
+// Whether there are several values, each other than the one before.
+bool AreChanges(const std::vector<double>& values) {
+  double before = runs::kMissing;
+  size_t changes = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    if (value == before) return false;
+    changes += std::isnan(before) ? 0 : 1;
+    before = value;
+  }
+  return changes > 0;
 }
 
 }  // namespace
@@ -43,7 +56,7 @@ std::string UnevenlyMissing(const std::vector<double>& time, const std::vector<d
   if (lacking < kMostLacking) return "";
   // Not "100 %" of 1 value in 3001.
   return "missing in " + ShortNumber(100 * missing, missing > 0.99 ? 4 : 3) +
-         " % of the rows, and not evenly, as of a slower sensor";
+         " % of the rows, and not evenly, as of a slower device";
 }
 
 std::vector<std::string> SparseSensorRemarks(const std::vector<runs::MeasuredRun>& runs) {
@@ -56,6 +69,24 @@ std::vector<std::string> SparseSensorRemarks(const std::vector<runs::MeasuredRun
     }
   }
   return remarks;
+}
+
+std::string UnevenCommands(const runs::MeasuredRun& run) {
+  if (run.written_commands.empty()) return "";
+  return UnevenlyMissing(run.time, run.written_commands, kMostLacking);
+}
+
+void AddCommandRemarks(const std::vector<runs::MeasuredRun>& runs, std::vector<std::string>* lost,
+                       std::vector<std::string>* changes) {
+  for (const runs::MeasuredRun& run : runs) {
+    const std::string uneven = UnevenCommands(run);
+    if (uneven.empty()) continue;
+    const bool right = AreChanges(run.written_commands);
+    (right ? changes : lost)
+        ->push_back(RunNamed(run.name) + ": " + runs::KeyIn(run, runs::kSignals.front()) + " is " + uneven +
+                    ": each of them holds the command before it" +
+                    (right ? ", which is right where the recorder writes changes only" : ""));
+  }
 }
 
 }  // namespace hydro::diagnose

@@ -59,6 +59,7 @@ void MeasuredRun::Keep(size_t first, size_t last) {
   };
   begun = Begin();
   for (const SignalName& one : kSignals) keep(&(this->*one.signal).values);
+  keep(&written_commands);
   keep(&time);
   first_row += first;
 }

@@ -64,6 +64,9 @@ struct MeasuredRun {
   std::optional<double> begun;  // s, time of the run's first sample, where that was cut off
   ColumnSource time_source;     // what the sidecar says about it
   MeasuredSignal voltage;       // command of eq. (1), held from each sample to the next; no value is missing
+  // The same as written, NaN in the rows of a table that had none and hold the one before. Empty: all had
+  // one.
+  std::vector<double> written_commands;
   MeasuredSignal pressure_ref;  // of p2 - p1
   MeasuredSignal motor_speed;
   MeasuredSignal motor_angle;

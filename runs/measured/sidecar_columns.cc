@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/number_text.h"
@@ -277,7 +278,12 @@ void ReadColumns(settings::SectionReader columns, tables::Table* table, Measured
     }
     const bool command = kSignals[i].signal == &MeasuredRun::voltage;
     MeasuredSignal& signal = run->*kSignals[i].signal;
-    signal.values = command ? CommandValues(*table, *sources[i], key) : SignalValues(*table, *sources[i]);
+    signal.values = SignalValues(*table, *sources[i]);
+    if (command) {
+      run->written_commands = std::move(signal.values);
+      signal.values = CommandValues(*table, *sources[i], key);
+      if (run->written_commands == signal.values) run->written_commands.clear();
+    }
     signal.source = sources[i]->Described();
     if (sources[i]->delay != 0) delays.emplace_back(kSignals[i].signal, sources[i]->delay);
   }

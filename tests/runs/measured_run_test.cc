@@ -66,6 +66,7 @@ TEST_F(MeasuredRunTest, Delay) {
            table);
   EXPECT_THAT(run.time, ElementsAre(1, 2));
   EXPECT_THAT(run.voltage.values, ElementsAre(1, 2));
+  EXPECT_THAT(run.written_commands, ElementsAre()) << "every row has one";
   EXPECT_THAT(run.motor_speed.values, ElementsAre(1, 2));
   EXPECT_THAT(run.p1.values, ElementsAre(12, 13));
   EXPECT_THAT(run.Place(0), HasSubstr("line 3"));
@@ -87,6 +88,7 @@ TEST_F(MeasuredRunTest, TableWithSidecar) {
   EXPECT_EQ(run.model_text, "");
   EXPECT_THAT(run.time, ElementsAre(0, 0.5, 0.75));
   EXPECT_THAT(run.voltage.values, ElementsAre(3.5, 3.5, 4.5));
+  EXPECT_THAT(run.written_commands, ElementsAre(3.5, IsNan(), 4.5));
   EXPECT_THAT(run.motor_speed.values, ElementsAre(0, 60 * 0.10471975512, 120 * 0.10471975512));
   EXPECT_THAT(run.p1.values, ElementsAre(100, IsNan(), 103));
   EXPECT_THAT(run.p2.values, ElementsAre(101 + 14.7, 102 + 14.7, IsNan()));

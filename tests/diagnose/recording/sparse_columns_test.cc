@@ -42,7 +42,7 @@ TEST(SparseColumns, UnevenOnes) {
   }
   EXPECT_THAT(
       SparseSensorRemarks({WithP1In([](size_t i) { return i < 300; })}),
-      ElementsAre("run swing: p1 is missing in 70 % of the rows, and not evenly, as of a slower sensor"));
+      ElementsAre("run swing: p1 is missing in 70 % of the rows, and not evenly, as of a slower device"));
 }
 
 // Tests that the values of a slower sensor are none to remark on: in each fourth row, at a rate that the
@@ -64,6 +64,50 @@ TEST(SparseColumns, SlowerSensors) {
   EXPECT_THAT(SparseSensorRemarks(slow), IsEmpty());
   for (const runs::MeasuredRun& run : slow)
     EXPECT_THAT(testing::LineInChecklist(run, "p1"), Not(HasSubstr("evenly")));
+}
+
+// A swing whose command is written in some rows only and held between them.
+runs::MeasuredRun WithCommandsIn(const std::function<bool(size_t)>& there) {
+  runs::MeasuredRun run = WithP1In([](size_t) { return true; });
+  run.written_commands = run.voltage.values;
+  for (size_t i = 1; i < run.samples(); ++i) {
+    if (there(i)) continue;
+    run.written_commands[i] = runs::kMissing;
+    run.voltage.values[i] = run.voltage.values[i - 1];
+  }
+  return run;
+}
+
+// Tests that a command that only the first row has, or that was lost now and then, is said and makes the
+// recording wrong, that one which is another each time is only said, and that a slower one is neither.
+TEST(SparseColumns, Commands) {
+  const runs::MeasuredRun once = WithCommandsIn([](size_t) { return false; });
+  const std::string says =
+      "run swing: voltage is missing in 99.9 % of the rows, and not evenly, as of a slower ";
+  EXPECT_THAT(ReportOnRecordings(testing::Table1Model(), {once}, 1).wrong, Contains(StartsWith(says)));
+  EXPECT_THAT(
+      testing::LineInChecklist(once, "voltage"),
+      ::testing::ContainsRegex("^look .*, 999 missing: it never changes; missing in 99.9 % of the rows"));
+  std::vector<std::string> lost, changes;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> chance;
+  runs::MeasuredRun some = WithCommandsIn([&](size_t) { return chance(random) < 0.8; });
+  AddCommandRemarks({some}, &lost, &changes);
+  EXPECT_THAT(lost, IsEmpty());
+  EXPECT_THAT(changes, ElementsAre(HasSubstr("is right where the recorder writes changes only")));
+  EXPECT_THAT(ReportOnRecordings(testing::Table1Model(), {some}, 1).limits, Contains(changes[0]));
+  changes.clear();
+  some.written_commands[1] = some.written_commands[0];
+  AddCommandRemarks({some}, &lost, &changes);
+  EXPECT_THAT(lost, ElementsAre(HasSubstr("each of them holds the command before it")));
+  EXPECT_THAT(changes, IsEmpty());
+  lost.clear();
+  AddCommandRemarks(
+      {WithCommandsIn([](size_t i) { return i % 10 == 0; }), WithCommandsIn([](size_t) { return true; }),
+       testing::Swing(model::Shaft::kClamped, false)},
+      &lost, &changes);
+  EXPECT_THAT(lost, IsEmpty());
+  EXPECT_THAT(changes, IsEmpty());
 }
 
 }  // namespace
