@@ -97,7 +97,9 @@ class RunChecklist {
     }
     const bool command = name.signal == &MeasuredRun::voltage;
     if (command) unit = runs::UnitIn(run_, name) + " (the command that k_1 takes)";
-    std::string doubt = range.high > range.low ? "" : ": it never changes";
+    // A valve's state is that of a whole run.
+    const bool may_rest = range.high > range.low || name.signal == &MeasuredRun::bypass_valve;
+    std::string doubt = may_rest ? "" : ": it never changes";
     if (name.signal == &MeasuredRun::p1 || name.signal == &MeasuredRun::p2) {
       const std::optional<BelowVacuum> below = FindBelowVacuum(model_, signal);
       if (below) doubt = "; " + diagnose::Text(*below, factor, unit);

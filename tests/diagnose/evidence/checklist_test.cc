@@ -206,6 +206,8 @@ TEST(ChecklistTest, AbsentAndStill) {
   }
   EXPECT_THAT(LineInChecklist(run, "sign of the command"), ::testing::HasSubstr("moves too little to tell"));
   EXPECT_THAT(LineInChecklist(run, "motor_speed"), ::testing::HasSubstr("it never changes"));
+  run.bypass_valve.values.assign(run.samples(), 1);
+  EXPECT_THAT(LineInChecklist(run, "bypass"), ::testing::ContainsRegex("^ok .*1 to 1 1?$"));
 }
 
 }  // namespace
