@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/maths/spread.h"
+#include "base/text_file.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
 #include "diagnose/recording/run_data.h"
@@ -60,12 +61,45 @@ std::string Turns(const Run& run, SignalOfRun angle) {
          (jumps == 1 ? " time" : " times") + ": it starts again after each; record it with the turns counted";
 }
 
+// Whether the values lie on one straight line in time but for rounding, as those of no sensor do.
+bool RisesAsTime(const std::vector<double>& time, const std::vector<double>& values) {
+  constexpr double kRounding = 1e-6;  // of the range
+  if (values.size() != time.size() || std::isnan(values.front()) || std::isnan(values.back())) return false;
+  const double rise = values.back() - values.front(), duration = time.back() - time.front();
+  if (rise == 0) return false;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double line = values.front() + rise * ((time[i] - time.front()) / duration);
+    if (!(std::abs(values[i] - line) <= kRounding * std::abs(rise))) return false;
+  }
+  return true;
+}
+
+// A column of times or of row numbers that is given for a signal. Commands and angles may rise as time does,
+// and what is simulated without noise may too.
+std::string TimesFor(const Run& run) {
+  const bool simulated = !run.model_text.empty();
+  for (const runs::SignalName& name : runs::kSignals) {
+    const runs::MeasuredSignal& signal = run.*name.signal;
+    if (!signal.measured()) continue;
+    const std::string& column = signal.source.column;
+    const bool same = !column.empty() && column == run.time_source.column;
+    const bool pressure = name.signal == &Run::p1 || name.signal == &Run::p2 || name.signal == &Run::dp;
+    if (!same && (simulated || !pressure || !RisesAsTime(run.time, signal.values))) continue;
+    return std::string(runs::KeyIn(run, name)) +
+           (same ? " is the column of the time" : " rises as time does, without noise") +
+           (column.empty()
+                ? ""
+                : ": " + Quoted(column) + " holds times or numbers of rows, so name another column");
+  }
+  return "";
+}
+
 }  // namespace
 
 std::vector<std::string> Contradictions(const model::ModelDescription& model, const Run& run) {
   std::vector<std::string> found;
   for (const std::string& text : {TwinPressures(run), Turns(run, &Run::motor_angle),
-                                  model.units.linear_arm ? "" : Turns(run, &Run::arm_angle),
+                                  model.units.linear_arm ? "" : Turns(run, &Run::arm_angle), TimesFor(run),
                                   StatedBypassContradiction(model.parameters, run)}) {
     if (!text.empty()) found.push_back(RunNamed(run.name) + ": " + text);
   }

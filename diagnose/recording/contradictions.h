@@ -10,8 +10,9 @@
 namespace hydro::diagnose {
 
 // One line each with what was found and how to correct it, in this order: equal pressures on both sides, from
-// one column used for both or from an open bypass that is not stated; angles that jump by a turn; a bypass
-// stated to be open while p2 - p1 takes the motor's torque, which `model` gives roughly.
+// one column used for both or from an open bypass that is not stated; angles that jump by a turn; times
+// given for a signal; a bypass stated to be open while p2 - p1 takes the
+// motor's torque, which `model` gives roughly.
 std::vector<std::string> Contradictions(const model::ModelDescription& model, const runs::MeasuredRun& run);
 
 }  // namespace hydro::diagnose

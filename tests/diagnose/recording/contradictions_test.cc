@@ -55,6 +55,27 @@ TEST(Contradictions, Turns) {
   EXPECT_THAT(Found(run), IsEmpty());
 }
 
+// Tests that times given for a pressure are named, whatever their unit and whether or not they are the
+// column of the time; and that a ramp of the command and the angle of an even motion are none.
+TEST(Contradictions, Times) {
+  runs::MeasuredRun run = Swing(model::Shaft::kClamped);
+  run.voltage.values = run.motor_angle.values = run.time;
+  run.time_source.column = "t";
+  EXPECT_THAT(Found(run), IsEmpty());
+  run.p1.values = run.time;
+  Scale(14.5, &run.p1);
+  EXPECT_THAT(Found(run), ElementsAre("run swing: p1 rises as time does, without noise"));
+  run.p1.source.column = "ms";
+  EXPECT_THAT(Found(run),
+              ElementsAre("run swing: p1 rises as time does, without noise: \"ms\" holds times or "
+                          "numbers of rows, so name another column"));
+  run.p1.source.column = "t";
+  EXPECT_THAT(Found(run), ElementsAre(HasSubstr("p1 is the column of the time: \"t\" holds times")));
+  run.p1.values[500] += 1;
+  run.p1.source.column = "p";
+  EXPECT_THAT(Found(run), IsEmpty());
+}
+
 // Tests that a bypass that cannot have been open is named.
 TEST(Contradictions, Bypass) {
   runs::MeasuredRun run = Swing(model::Shaft::kClamped);
