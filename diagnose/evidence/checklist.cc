@@ -10,6 +10,7 @@
 #include "base/number_text.h"
 #include "base/units.h"
 #include "diagnose/evidence/run_mistakes.h"
+#include "diagnose/recording/contradictions.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sparse_columns.h"
@@ -97,6 +98,15 @@ class RunChecklist {
     }
     const bool command = name.signal == &MeasuredRun::voltage;
     if (command) unit = runs::UnitIn(run_, name) + " (the command that k_1 takes)";
+    const std::string doubt = DoubtOf(name, factor, unit);
+    Add(doubt.empty() ? State::kGood : State::kLook, runs::KeyIn(run_, name),
+        Text(range, unit, MissingIn(command ? run_.written_commands : signal.values)) + doubt);
+  }
+
+  // What is worth a look in a signal; "": nothing. The text has what is `factor` times the signal, in `unit`.
+  std::string DoubtOf(const runs::SignalName& name, double factor, const std::string& unit) const {
+    const MeasuredSignal& signal = run_.*name.signal;
+    const Range range = RangeOf(signal.values);
     // A valve's state is that of a whole run.
     const bool may_rest = range.high > range.low || name.signal == &MeasuredRun::bypass_valve;
     std::string doubt = may_rest ? "" : ": it never changes";
@@ -104,13 +114,15 @@ class RunChecklist {
       const std::optional<BelowVacuum> below = FindBelowVacuum(model_, signal);
       if (below) doubt = "; " + diagnose::Text(*below, factor, unit);
     }
-    const bool sensor = name.standard_deviation != nullptr;
-    const std::string uneven = command  ? UnevenCommands(run_)
-                               : sensor ? UnevenlyMissing(run_.time, signal.values, kSlowerSensor)
-                                        : "";
+    const Range& oil = kOilTemperatures;
+    if (name.signal == &MeasuredRun::temperature && (range.low < oil.low || range.high > oil.high))
+      doubt = ": no oil is as cold or as hot";
+    const std::string uneven = name.signal == &MeasuredRun::voltage ? UnevenCommands(run_)
+                               : name.standard_deviation != nullptr
+                                   ? UnevenlyMissing(run_.time, signal.values, kSlowerSensor)
+                                   : "";
     if (!uneven.empty()) doubt += (doubt.empty() ? ": " : "; ") + uneven;
-    Add(doubt.empty() ? State::kGood : State::kLook, runs::KeyIn(run_, name),
-        Text(range, unit, MissingIn(command ? run_.written_commands : signal.values)) + doubt);
+    return doubt;
   }
 
   // The lowest pressure of a closed circuit is its charge pressure, whatever moves.

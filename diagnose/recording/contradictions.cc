@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "base/maths/spread.h"
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
@@ -20,6 +20,7 @@ using Run = runs::MeasuredRun;
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kLikeATurn = 0.05;  // relative
 constexpr double kSmallStep = 1;     // rad: samples that follow a motion are closer to each other
+constexpr double kZeroInKelvin = 273.15;
 
 // How often the angle jumps by a turn and stays there; 0 where it moves so fast that a turn could be motion.
 size_t JumpsByATurn(const std::vector<double>& angle) {
@@ -61,6 +62,22 @@ std::string Turns(const Run& run, SignalOfRun angle) {
          (jumps == 1 ? " time" : " times") + ": it starts again after each; record it with the turns counted";
 }
 
+std::string ImpossibleTemperature(const Run& run) {
+  const std::vector<double>& values = run.temperature.values;
+  constexpr maths::Range kOil = kOilTemperatures;
+  const auto is_one = [=](double value) { return value < kOil.low || value > kOil.high; };
+  const auto first = std::find_if(values.begin(), values.end(), is_one);
+  if (first == values.end()) return "";
+  const maths::Range range = maths::RangeOf(values);
+  const bool kelvin = range.low > kOil.low + kZeroInKelvin && range.high < kOil.high + kZeroInKelvin;
+  const auto count = std::count_if(values.begin(), values.end(), is_one);
+  return "temperature is " + ShortNumber(*first) + " degC at " +
+         ShortNumber(run.time[static_cast<size_t>(first - values.begin())]) + " s, and outside " +
+         ShortNumber(kOil.low) + " to " + ShortNumber(kOil.high) + " degC, as no oil is, in " +
+         std::to_string(count) + (count == 1 ? " sample: " : " samples: ") +
+         (kelvin ? "is its column in K? unit = \"K\"" : "is its column in another unit, or a cell damaged?");
+}
+
 // Whether the values lie on one straight line in time but for rounding, as those of no sensor do.
 bool RisesAsTime(const std::vector<double>& time, const std::vector<double>& values) {
   constexpr double kRounding = 1e-6;  // of the range
@@ -98,9 +115,10 @@ std::string TimesFor(const Run& run) {
 
 std::vector<std::string> Contradictions(const model::ModelDescription& model, const Run& run) {
   std::vector<std::string> found;
-  for (const std::string& text : {TwinPressures(run), Turns(run, &Run::motor_angle),
-                                  model.units.linear_arm ? "" : Turns(run, &Run::arm_angle), TimesFor(run),
-                                  StatedBypassContradiction(model.parameters, run)}) {
+  for (const std::string& text :
+       {TwinPressures(run), Turns(run, &Run::motor_angle),
+        model.units.linear_arm ? "" : Turns(run, &Run::arm_angle), TimesFor(run), ImpossibleTemperature(run),
+        StatedBypassContradiction(model.parameters, run)}) {
     if (!text.empty()) found.push_back(RunNamed(run.name) + ": " + text);
   }
   return found;

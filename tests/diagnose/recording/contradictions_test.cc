@@ -8,12 +8,14 @@
 
 #include "diagnose/recording_first.h"
 #include "tests/diagnose/noisy_rig.h"
+#include "tests/diagnose/recording/line_in_checklist.h"
 #include "tests/diagnose/recording/swing.h"
 #include "tests/table1.h"
 
 namespace hydro::diagnose {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -74,6 +76,30 @@ TEST(Contradictions, Times) {
   run.p1.values[500] += 1;
   run.p1.source.column = "p";
   EXPECT_THAT(Found(run), IsEmpty());
+}
+
+// Tests that temperatures that no oil has are named, with the unit that they may be in.
+TEST(Contradictions, Temperatures) {
+  runs::MeasuredRun run = Swing(model::Shaft::kClamped);
+  for (const double good : {-40.0, 20.0, 120.0}) {
+    run.temperature.values.assign(run.samples(), good);
+    EXPECT_THAT(Found(run), IsEmpty()) << good;
+  }
+  for (const double bad : {-400.0, 5000.0}) {
+    run.temperature.values.assign(run.samples(), 20);
+    run.temperature.values[7] = bad;
+    EXPECT_THAT(
+        Found(run),
+        ElementsAre(AllOf(HasSubstr("run swing: temperature is "),
+                          HasSubstr("at 0.007 s, and outside -60 to 200 degC, as no oil is, in 1 sample: "),
+                          HasSubstr("a cell damaged?"))))
+        << bad;
+  }
+  run.temperature.values.assign(run.samples(), 293.15);
+  EXPECT_THAT(Found(run), ElementsAre(HasSubstr("is its column in K? unit = \"K\"")));
+  EXPECT_EQ(testing::LineInChecklist(run, "temperature").substr(0, 4), "look");
+  const RecordingReport report = ReportOnRecordings(Table1Model(), {run}, 1);
+  EXPECT_THAT(report.wrong, ::testing::Contains(HasSubstr("as no oil is")));
 }
 
 // Tests that a bypass that cannot have been open is named.
