@@ -116,6 +116,25 @@ void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const
                      runs::TimeUnitHint(longest));
 }
 
+// Times what saturates the amplifier, eq. (1): controllers want more than they get, but hardly this much.
+constexpr double kFarBeyond = 4;
+
+void RemarkOnLargeCommands(const model::Parameters& model, const std::vector<const RunData*>& runs,
+                           std::vector<std::string>* remarks) {
+  const double saturates = model.T_pmax / model.k_1;
+  for (const RunData* run : runs) {
+    const maths::Range range = maths::RangeOf(run->stimulus.voltage);
+    const double largest = std::max(-range.low, range.high);
+    if (!(largest > kFarBeyond * saturates)) continue;
+    const runs::SignalName& command = runs::kSignals.front();
+    const std::string unit = " " + runs::UnitIn(run->measured, command);
+    remarks->push_back(RunNamed(run->name) + ": " + runs::KeyIn(run->measured, command) + " reaches " +
+                       ShortNumber(largest) + unit + ", " + ShortNumber(largest / saturates, 2) +
+                       " times what saturates the amplifier, T_pmax/k_1 = " + ShortNumber(saturates) + unit +
+                       ": is it in percent or counts, or as wanted before a limit?");
+  }
+}
+
 void RemarkOnOneSide(const std::string& missing, const std::vector<std::string>& names, size_t runs,
                      std::vector<std::string>* remarks) {
   if (names.empty()) return;
@@ -186,6 +205,7 @@ std::vector<std::string> LimitRemarks(const model::Parameters& model,
   std::vector<std::string> remarks;
   RemarkOnMissingSignals(runs, &remarks);
   RemarkOnSlowSamples(model, runs, &remarks);
+  RemarkOnLargeCommands(model, runs, &remarks);
   return remarks;
 }
 

@@ -32,7 +32,7 @@ std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs);
 std::string LoadRemark(const std::vector<runs::MeasuredRun>& runs);
 
 // What these runs cannot show although nothing is wrong with them, because no run has a signal, or because
-// samples are too far apart for the model's fastest motion.
+// samples are too far apart for the model's fastest motion, or because a command is far beyond what acts.
 std::vector<std::string> LimitRemarks(const model::Parameters& model,
                                       const std::vector<const RunData*>& runs);
 

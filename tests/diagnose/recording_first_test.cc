@@ -87,6 +87,15 @@ TEST(RecordingFirst, OneSideIsMissing) {
       ::testing::Contains(HasSubstr("run bench: p2 was not recorded: what leaks or opens on side 2")));
 }
 
+// Tests that a command in percent of a +/-10 V amplifier is said, and one that the amplifier limits is not.
+TEST(RecordingFirst, CommandInPercent) {
+  std::vector<runs::MeasuredRun> runs = Bench(10, 1);
+  EXPECT_THAT(ReportOnRecordings(kGiven, runs, 1).limits,
+              ::testing::Contains(HasSubstr("run bench: voltage reaches 50 V, 5 times what saturates the "
+                                            "amplifier, T_pmax/k_1 = 10 V: is it in percent or counts")));
+  EXPECT_THAT(ReportOnRecordings(kGiven, Bench(6, 1), 1).limits, IsEmpty());
+}
+
 // Tests that the time limit holds for the check, too: what it cuts off is not found.
 TEST(RecordingFirst, TimeIsUp) {
   std::vector<runs::MeasuredRun> runs = Bench(-1, 1), none;
