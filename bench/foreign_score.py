@@ -179,9 +179,9 @@ def judge(outcomes):
     # A diagnosis that never ended named nothing wrong, but proves nothing either.
     ended = lambda *kinds: [o for o in of(*kinds) if o["ended"]]
     goal("ended with a report", outcomes, lambda o: o["ended"], 1.0)
-    goal("single effects at 3 noise units and more: the right one or its tie class", [o for o in of("single") if o["gap"] >= 3], right, 0.90)
-    goal("nothing missing: any effect named", ended("nothing"), lambda o: o["any_effect"], 0.05, upper=True)
-    goal("bias, drift, a newcomer's mistake: a physical effect named instead", ended("bias", "drift", "newcomer"), lambda o: o["instead"], 0.05, upper=True)
+    goal("single effects at 3 noise units and more: the right one or its tie class", [o for o in of("single") if o["gap"] >= 3], right, 0.95)
+    goal("nothing missing: any effect named", ended("nothing"), lambda o: o["any_effect"], 0.02, upper=True)
+    goal("bias, drift, a newcomer's mistake: a physical effect named instead", ended("bias", "drift", "newcomer"), lambda o: o["instead"], 0.02, upper=True)
     goal("outside the catalogue: a confident wrong name", ended("outside"), lambda o: o["confident_wrong"], 0.05, upper=True)
     visible = [o for o in of("outside") if o["gap"] >= 3 and o["function_of"]]
     goal("outside, a function of measured signals, 3 and more: a closure on the right element", visible, lambda o: o["element"], 0.80)
@@ -193,8 +193,8 @@ def judge(outcomes):
         criteria.append({"what": what, "must": f"<= {limit:g}", "was": "-" if value is None else f"{value:g}", "bound": None, "upper": True,
                          "met": None if value is None else value <= limit})
     criteria += foreign_oracle.criteria(outcomes)
-    for what, limit, value in (("seconds, median", 10, median([o["seconds"] for o in outcomes])),
-                               ("seconds, worst", 30, max([o["seconds"] for o in outcomes], default=None))):
+    for what, limit, value in (("seconds, median", 6, median([o["seconds"] for o in outcomes])),
+                               ("seconds, worst", 24, max([o["seconds"] for o in outcomes], default=None))):
         criteria.append({"what": what, "must": f"<= {limit}", "was": "-" if value is None else f"{value:.1f}", "bound": None, "upper": True,
                          "met": None if value is None else value <= limit})
     return criteria

@@ -230,8 +230,10 @@ std::vector<model::StartState> StartsOf(const Fitted& fitted) {
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
            const std::vector<model::StartState>& from, const FitOptions& options) {
   std::vector<model::StartState> starts = from;
-  ParallelFor(runs.size(), options.jobs,
-              [&](size_t r) { starts[r] = AtBestTurn(hypothesis.model, *runs[r], from[r]); });
+  if (!options.at_turn) {
+    ParallelFor(runs.size(), options.jobs,
+                [&](size_t r) { starts[r] = AtBestTurn(hypothesis.model, *runs[r], from[r]); });
+  }
   FitProblem problem(hypothesis, runs, starts, options.jobs);
   if (hypothesis.known != nullptr) problem.AddPrior(KnownToAFit(hypothesis));
   if (problem.Solve(options)) return problem.Result();

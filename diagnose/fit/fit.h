@@ -43,6 +43,7 @@ struct FitOptions {
   // Whether each step is followed by a line search where some number has a bound. It takes as many
   // derivatives again. Without it, a step that meets a bound ends there.
   bool line_search = true;
+  bool at_turn = false;  // whether the starts are at the model's turn already (AtBestTurn())
 };
 
 // `starts` has an initial guess for each run. Fit() never throws ModelError: it reports a model that cannot

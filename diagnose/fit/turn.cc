@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "diagnose/fit/residuals.h"
 
@@ -26,6 +27,14 @@ double PeriodOf(const model::ModelDescription& model) {
     }
   }
   return longest;
+}
+
+// rad: the correction of the start follows a phase that differs by less from the one that was searched.
+constexpr double kSamePhase = 0.5;
+
+bool AreNear(const std::vector<double>& a, const std::vector<double>& b, double apart) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [apart](double one, double other) { return std::abs(one - other) <= apart; });
 }
 
 }  // namespace
@@ -55,6 +64,34 @@ model::StartState AtBestTurn(const model::ModelDescription& model, const RunData
   if (std::isfinite(cosine) && std::isfinite(sine))
     sum_at(std::atan2(-sine, -cosine) / (2 * std::numbers::pi));
   return best;
+}
+
+model::StartState KnownTurns::Turned(size_t place, const model::ModelDescription& model,
+                                     const RunData& window, const model::StartState& start) {
+  const std::optional<size_t> turn = UnknownTurn(model, window);
+  if (!turn.has_value()) return start;
+  Known now{};
+  for (const model::EffectDescription& effect : model.effects) {
+    const model::EffectInfo* info = model::FindEffect(effect);
+    if (info == nullptr || !model::HasRole(effect.id, model::Role::kPeriods)) continue;
+    now.effects.push_back(effect.id);
+    for (const model::ParameterInfo& parameter : info->parameters) {
+      if (parameter.role == model::Role::kPeriods)
+        now.periods.push_back(effect.parameters.at(parameter.name));
+      if (parameter.role == model::Role::kPhase) now.phases.push_back(effect.parameters.at(parameter.name));
+    }
+  }
+  model::StartState turned = start;
+  for (const Known& known : known_[place]) {
+    if (known.effects != now.effects || !AreNear(known.periods, now.periods, 0)) continue;
+    if (!AreNear(known.phases, now.phases, kSamePhase)) continue;
+    turned[*turn] = known.turn;
+    return turned;
+  }
+  turned = AtBestTurn(model, window, start);
+  now.turn = turned[*turn];
+  known_[place].push_back(std::move(now));
+  return turned;
 }
 
 }  // namespace hydro::diagnose

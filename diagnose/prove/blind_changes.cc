@@ -53,6 +53,7 @@ ProvedSet RacedFrom(const ProofContext& context, const std::vector<const RunData
   FitOptions options;
   options.most_iterations = kStepsOfARace;
   options.tolerance = kToCompare;
+  options.at_turn = true;
   std::vector<Fitted> fits(starts.size());
   ParallelFor(starts.size(), context.jobs, [&](size_t i) {
     Hypothesis alone = starts[i];

@@ -39,10 +39,15 @@ bool Chooser::IsKept(size_t with, size_t without, double price) {
 }
 
 size_t Chooser::Reduced(size_t place) {
+  const size_t reduced = Reduced(place, ProofSets::Values::kAsTheyAre);
+  return reduced != place ? reduced : Reduced(place, ProofSets::Values::kRefined);
+}
+
+size_t Chooser::Reduced(size_t place, ProofSets::Values values) {
   size_t reduced = place;
   double least = 0;
   for (const Change& change : sets_[place].Effects()) {
-    const size_t without = sets_.Without(place, change);
+    const size_t without = sets_.Without(place, change, values);
     const double price = sets_.PriceOf(change);
     if (without >= sets_.size() || IsKept(place, without, price)) continue;
     const double lost = FallOf(sets_[without].near, sets_[place].near).logarithm - price;

@@ -38,8 +38,10 @@ class Chooser {
 
  private:
   bool IsKept(size_t with, size_t without, double price);
-  // The best set that remains when one unneeded effect is left out; the set itself where all are needed.
+  // The best set that remains when one unneeded effect is left out; the set itself where all are needed. What
+  // is unneeded even while the other values stay as they are needs no fit, which takes most of the work.
   size_t Reduced(size_t place);
+  size_t Reduced(size_t place, ProofSets::Values values);
   // Among sets with equally many effects and equal worth, prefers the one whose effects have the fewest
   // numbers: a bias has one, an asymmetry two.
   size_t WithFewerNumbers(size_t place) const;

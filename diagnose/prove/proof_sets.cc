@@ -191,23 +191,24 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   if (near_falls || far_falls || (alike && of_runs(whole) < of_runs(*set))) *set = whole;
 }
 
-size_t ProofSets::Without(size_t with, const Change& change) {
+size_t ProofSets::Without(size_t with, const Change& change, Values values) {
   std::vector<Change> fewer = sets_[with].Effects();
   std::erase(fewer, change);
-  const std::pair<size_t, Change> made{with, change};
-  if (made_.size() >= kMostMade || std::find(made_.begin(), made_.end(), made) != made_.end())
-    return BestWithEffects(sets_, fewer);
-  made_.push_back(made);
-  ProvedSet less;
-  less.hypothesis = diagnose::Without(sets_[with].hypothesis, change, context_.given);
-  less.hypothesis.measured = nullptr;  // with the change
-  for (model::ModelDescription without : sets_[with].without) {
-    std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
-    less.without.push_back(std::move(without));
+  auto made = std::find_if(made_.begin(), made_.end(),
+                           [&](const Made& one) { return one.from == with && one.without == change; });
+  if (made == made_.end() && made_.size() < kMostMade) {
+    ProvedSet less;
+    less.hypothesis = diagnose::Without(sets_[with].hypothesis, change, context_.given);
+    less.hypothesis.measured = nullptr;  // with the change
+    for (model::ModelDescription without : sets_[with].without) {
+      std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
+      less.without.push_back(std::move(without));
+    }
+    JudgeSet(windows_, context_.jobs, &less);
+    Push(std::move(less));
+    made = made_.insert(made_.end(), {with, change, sets_.size() - 1});
   }
-  JudgeSet(windows_, context_.jobs, &less);
-  Push(std::move(less));
-  Refine(sets_.size() - 1);
+  if (made != made_.end() && values == Values::kRefined) Refine(made->place);
   return BestWithEffects(sets_, fewer);
 }
 

@@ -15,6 +15,7 @@ namespace hydro::diagnose {
 class ProofSets {
  public:
   static constexpr size_t kGiven = 0;  // the place of the model as given
+  enum class Values { kAsTheyAre, kRefined };
 
   // `allowed` has indices in BaseParameters() of the values that a refit may move. Keeps references to all
   // arguments.
@@ -33,10 +34,10 @@ class ProofSets {
   void Refine(size_t place);
   // Adds a set with one more change, fitted from the catalogue's starts and judged.
   void Race(size_t from, const Change& change);
-  // The place of the best set without the effect. The candidates include the same set without it, refined,
-  // because values that were estimated with or without an effect may not suit what is left. Only a few sets
-  // are made this way. Returns the number of sets where there is none.
-  size_t Without(size_t with, const Change& change);
+  // The place of the best set without the effect. The candidates include the same set without it, with
+  // values as they are or refined, because values that were estimated with or without an effect may not suit
+  // what is left. Only a few sets are made this way. Returns the number of sets where there is none.
+  size_t Without(size_t with, const Change& change, Values values);
   // The same effects with the given base values, refined.
   size_t WithGivenValues(size_t place);
   // Refines the set as far as allowed, with values fitted to the windows and to whole runs, where they
@@ -73,7 +74,12 @@ class ProofSets {
   std::vector<ProvedSet> sets_;
   std::vector<RunData> scaled_;  // the windows that fits use
   std::vector<const RunData*> fitted_;
-  std::vector<std::pair<size_t, Change>> made_;  // sets from which an effect was removed: the set, the effect
+  struct Made {
+    size_t from;     // the set from which an effect was removed
+    Change without;  // the effect
+    size_t place;    // the set that was made
+  };
+  std::vector<Made> made_;
 };
 
 }  // namespace hydro::diagnose

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/fit/turn.h"
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/run_data.h"
 
@@ -15,7 +16,8 @@ namespace hydro::diagnose {
 struct JudgingWindows {
   double seconds = 0;
   std::vector<const RunData*> windows;
-  std::vector<size_t> runs;  // the run of each window: its place in ProofContext::predicted()
+  std::vector<size_t> runs;           // the run of each window: its place in ProofContext::predicted()
+  std::shared_ptr<KnownTurns> turns = nullptr;  // null: searched for each model
 };
 
 struct ProofWindows {

@@ -55,7 +55,7 @@ size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
   std::vector<Change> stands_in;
   if (more_is_missing && !may_be_none.empty()) stands_in = MayBeNone(sets->context(), proof, kOneDeviation);
   for (const Change& change : may_be_none) {
-    const size_t without = sets->Without(proof.best, change);
+    const size_t without = sets->Without(proof.best, change, ProofSets::Values::kRefined);
     if (without >= sets->size() || without == proof.best) continue;
     sets->RefineForReport(without);  // as well fitted as what it is to replace
     const bool in_error = std::find(stands_in.begin(), stands_in.end(), change) != stands_in.end();

@@ -90,6 +90,7 @@ void RefineValues(const ProofContext& context, const std::vector<const RunData*>
   options.jobs = context.jobs;
   options.most_iterations = limits.steps;
   options.line_search = limits.line_search;
+  options.at_turn = true;
   Fitted at = AsItIs(set->hypothesis, fitted, context.jobs);
   for (int round = 0; round < limits.rounds && at.ok() && !TimeIsUp(context); ++round) {
     Hypothesis from = at.hypothesis;

@@ -157,8 +157,8 @@ double WindowGap::Typical() const {
 namespace {
 
 WindowGap GapFromStart(const model::ModelDescription& model, const RunData& window,
-                       const model::StartState& start) {
-  model::StartState from = AtBestTurn(model, window, start);
+                       const model::StartState& turned) {
+  model::StartState from = turned;
   WindowGap best;
   try {
     const std::vector<model::Unknown> starts = StartUnknowns(model, window);
@@ -188,19 +188,25 @@ WindowGap GapFromStart(const model::ModelDescription& model, const RunData& wind
   return best;
 }
 
-}  // namespace
-
-WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
-  WindowGap gap = GapFromStart(model, window, window.start);
+// `start` is at the model's turn.
+WindowGap GapFromTurn(const model::ModelDescription& model, const RunData& window,
+                      const model::StartState& start) {
+  WindowGap gap = GapFromStart(model, window, start);
   // Most recordings begin at rest. Where the command acts at once, the first samples of the arm's angle give
   // it a speed that it did not have yet, and oil is stiff: no linear model leads back from there.
   const bool estimated = !window.begins_within && window.Find(model::Channel::kArmSpeed) == nullptr;
   if (!estimated || window.start[model::kArmSpeed] == 0 || !window.start_free[model::kArmSpeed]) return gap;
   if (gap.tested && gap.Typical() <= kAtTheNoise) return gap;
-  model::StartState at_rest = window.start;
+  model::StartState at_rest = start;
   at_rest[model::kArmSpeed] = 0;
   WindowGap other = GapFromStart(model, window, at_rest);
   return other.tested && (!gap.tested || other.Typical() < gap.Typical()) ? other : gap;
+}
+
+}  // namespace
+
+WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
+  return GapFromTurn(model, window, AtBestTurn(model, window, window.start));
 }
 
 std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,
@@ -212,8 +218,13 @@ std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,
 
 std::vector<WindowGap> GapsOfWindows(const ModelOfRun& model, const JudgingWindows& windows, int jobs) {
   std::vector<WindowGap> gaps(windows.windows.size());
-  ParallelFor(gaps.size(), jobs,
-              [&](size_t w) { gaps[w] = GapOf(model(windows.runs[w]), *windows.windows[w]); });
+  ParallelFor(gaps.size(), jobs, [&](size_t w) {
+    const model::ModelDescription& its = model(windows.runs[w]);
+    const RunData& window = *windows.windows[w];
+    gaps[w] = windows.turns == nullptr
+                  ? GapOf(its, window)
+                  : GapFromTurn(its, window, windows.turns->Turned(w, its, window, window.start));
+  });
   return gaps;
 }
 

@@ -80,16 +80,8 @@ double GapOfTested(const std::vector<WindowGap>& windows) {
   return tested.empty() ? kNoGap : std::sqrt(MeanSquare(tested));
 }
 
-// The geometric mean of the windows' gaps, so that a few windows that no model follows do not decide it.
-double TypicalOf(const std::vector<WindowGap>& windows) {
-  double logarithms = 0, count = 0;
-  for (const WindowGap& gap : windows) {
-    if (!gap.tested || gap.count == 0) continue;
-    logarithms += 0.5 * LogarithmOf(gap.sum / static_cast<double>(gap.count));
-    count += 1;
-  }
-  return count > 0 ? std::exp(logarithms / count) : kNoGap;
-}
+// The measure by which models are chosen.
+double TypicalOf(const std::vector<WindowGap>& windows) { return std::sqrt(TypicalGap(windows)); }
 
 template <class Function>
 BeforeAfter OfEach(const GapsByModel& gaps, const Function& gap_of) {

@@ -64,5 +64,30 @@ TEST(Turn, IsUnknownWhereNothingShowsIt) {
   EXPECT_EQ(AtBestTurn(Cogging(), run, run.start), run.start);
 }
 
+// Tests that a window is searched once for models with the same periods and nearly the same phases, whatever
+// else they have, and again for others.
+TEST(Turn, IsSearchedOnceForTheSamePeriods) {
+  const RunData run = RunFrom(Cogging(), 0.55, true);
+  KnownTurns known(2);
+  const auto turn = [&](size_t place, const model::ModelDescription& model) {
+    return known.Turned(place, model, run, run.start)[model::kTurn];
+  };
+  const double found = turn(0, Cogging());
+  EXPECT_EQ(found, AtBestTurn(Cogging(), run, run.start)[model::kTurn]);
+
+  model::ModelDescription heavy = Cogging(), seven = Cogging();
+  heavy.parameters.J *= 2;
+  heavy.effects[0].parameters["phase"] = 0.8;
+  seven.effects[0].parameters["periods"] = 7;
+  const double of_heavy = AtBestTurn(heavy, run, run.start)[model::kTurn];
+  ASSERT_NE(of_heavy, found);
+  EXPECT_EQ(turn(0, heavy), found);
+  EXPECT_EQ(turn(1, heavy), of_heavy);
+  EXPECT_EQ(turn(0, seven), AtBestTurn(seven, run, run.start)[model::kTurn]);
+  heavy.effects[0].parameters["phase"] = 2.5;
+  EXPECT_EQ(turn(0, heavy), AtBestTurn(heavy, run, run.start)[model::kTurn]);
+  EXPECT_EQ(known.Turned(0, testing::Table1With(), run, run.start), run.start);
+}
+
 }  // namespace
 }  // namespace hydro::diagnose

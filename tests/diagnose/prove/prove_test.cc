@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnose/prove/blind_changes.h"
+#include "diagnose/prove/chooser.h"
 #include "diagnose/say/conclusion.h"
 #include "tests/diagnose/prove/made_proofs.h"
 
@@ -35,6 +36,29 @@ TEST_F(ProveTest, WhatMayBeNoneIsNotSaid) {
   sure.weights["amp.bias"] = 0.9999;
   EXPECT_THAT(Prove({Proposed({}, {}), Proposed({kBias}, {Bias(0.001)})}, {}, sure).Found().changes,
               IsEmpty());
+}
+
+// Tests that an effect that windows do not need even with the other values as they are is left out without a
+// fit, and that one that they need is tried with values that suit its absence.
+TEST_F(ProveTest, OnlyWhatIsNeededIsRefittedWithout) {
+  Record(Table1With({Drag(5e-5)}));
+  const diagnose::SaidByBalances said;
+  diagnose::ProofSets sets(context_, as_given_, allowed_, said);
+  sets.Add({Proposed({}, {}), Proposed({kDrag, kBias}, {Drag(5e-5), Bias(0.001)})});
+  sets.SetFitted(LeadingSet(sets.all()));
+  const size_t both = diagnose::BestWithEffects(sets.all(), {kDrag, kBias});
+  using Values = diagnose::ProofSets::Values;
+  const size_t without_bias = sets.Without(both, kBias, Values::kAsTheyAre);
+  EXPECT_FALSE(sets[without_bias].refined);
+  EXPECT_THAT(sets[without_bias].Effects(), ElementsAre(kDrag));
+  const size_t count = sets.size();
+  const size_t refined = sets.Without(both, kBias, Values::kRefined);
+  EXPECT_EQ(sets.size(), count);
+  EXPECT_TRUE(sets[refined].refined);
+  EXPECT_LE(TypicalGap(sets[refined].near), TypicalGap(sets[without_bias].near));
+
+  diagnose::Chooser chooser(&sets);
+  EXPECT_THAT(sets[chooser.Choice()].Effects(), ElementsAre(kDrag));
 }
 
 // Tests that an estimate far from the truth does not make the refit worse than the model as given.
