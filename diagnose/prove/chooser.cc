@@ -1,6 +1,8 @@
 #include "diagnose/prove/chooser.h"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "diagnose/prove/proof_context.h"
 
@@ -39,23 +41,28 @@ bool Chooser::IsKept(size_t with, size_t without, double price) {
 }
 
 size_t Chooser::Reduced(size_t place) {
-  const size_t reduced = Reduced(place, ProofSets::Values::kAsTheyAre);
-  return reduced != place ? reduced : Reduced(place, ProofSets::Values::kRefined);
-}
-
-size_t Chooser::Reduced(size_t place, ProofSets::Values values) {
+  using Values = ProofSets::Values;
+  std::vector<std::pair<double, Change>> needed;  // with what is lost without them
   size_t reduced = place;
-  double least = 0;
+  double least = std::numeric_limits<double>::infinity();
   for (const Change& change : sets_[place].Effects()) {
-    const size_t without = sets_.Without(place, change, values);
+    const size_t without = sets_.Without(place, change, Values::kAsTheyAre);
+    if (without >= sets_.size()) continue;
     const double price = sets_.PriceOf(change);
-    if (without >= sets_.size() || IsKept(place, without, price)) continue;
     const double lost = FallOf(sets_[without].near, sets_[place].near).logarithm - price;
-    if (reduced != place && lost >= least) continue;
+    needed.emplace_back(lost, change);
+    if (IsKept(place, without, price) || lost >= least) continue;
     reduced = without;
     least = lost;
   }
-  return reduced;
+  if (reduced != place) return reduced;
+  std::stable_sort(needed.begin(), needed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [lost, change] : needed) {
+    const size_t without = sets_.Without(place, change, Values::kRefined);
+    if (!IsKept(place, without, sets_.PriceOf(change))) return without;
+  }
+  return place;
 }
 
 size_t Chooser::Choice() {

@@ -38,10 +38,11 @@ class Chooser {
 
  private:
   bool IsKept(size_t with, size_t without, double price);
-  // The best set that remains when one unneeded effect is left out; the set itself where all are needed. What
-  // is unneeded even while the other values stay as they are needs no fit, which takes most of the work.
+  // What remains when one unneeded effect is left out; the set itself where all are needed. What is unneeded
+  // even while the other values stay as they are goes first, that of which least is lost. It needs no fit,
+  // and fits take most of the work. Otherwise values are refitted without one effect after another, until one
+  // is unneeded.
   size_t Reduced(size_t place);
-  size_t Reduced(size_t place, ProofSets::Values values);
   // Among sets with equally many effects and equal worth, prefers the one whose effects have the fewest
   // numbers: a bias has one, an asymmetry two.
   size_t WithFewerNumbers(size_t place) const;

@@ -16,7 +16,7 @@ namespace hydro::diagnose {
 struct JudgingWindows {
   double seconds = 0;
   std::vector<const RunData*> windows;
-  std::vector<size_t> runs;           // the run of each window: its place in ProofContext::predicted()
+  std::vector<size_t> runs;  // the run of each window: its place in ProofContext::predicted()
   std::shared_ptr<KnownTurns> turns = nullptr;  // null: searched for each model
 };
 

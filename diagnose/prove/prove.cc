@@ -43,6 +43,20 @@ bool DoWindowsShow(ProofSets* sets, size_t with, size_t without) {
   return near.Exceeds(kPartOfValues) || (far.Exceeds(kPartOfAnEffect) && far.logarithm > 2 * far.error);
 }
 
+// The place of the best set without an effect that takes next to nothing (TakesNextToNothing()); if there is
+// none, the place of the best set.
+size_t WithoutWhatTakesNothing(ProofSets* sets, const Proof& proof) {
+  if (TimeIsUp(sets->context())) return proof.best;
+  for (const Change& change : proof.Best().Effects()) {
+    const size_t without = sets->Without(proof.best, change, ProofSets::Values::kRefined);
+    if (without >= sets->size() || without == proof.best) continue;
+    if (!TakesNextToNothing(proof.Best(), (*sets)[without], proof.Values())) continue;
+    sets->RefineForReport(without);
+    return without;
+  }
+  return proof.best;
+}
+
 // The place of the best set without an effect that may be absent and that the windows do not show either; if
 // there is no such effect, the place of the best set. Amounts that can replace each other may each be 0, but
 // not both: then the windows do show the effect. Where much more than noise is left, something else is
@@ -89,9 +103,11 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
   best = chooser.OneNumberForManyValues(best);
   best = chooser.WithWhatBalancesSay(chooser.TakeGivenValues(best));
   Proof proof = Reported(&sets, chooser, best);
-  for (size_t shown = best; (shown = WithoutWhatIsNotShown(&sets, proof)) != best;) {
-    best = shown;
-    proof = Reported(&sets, chooser, best);
+  for (const auto& drop : {WithoutWhatTakesNothing, WithoutWhatIsNotShown}) {
+    for (size_t shown = best; (shown = drop(&sets, proof)) != best;) {
+      best = shown;
+      proof = Reported(&sets, chooser, best);
+    }
   }
   // At the noise, windows are too short for what is left, if anything is.
   const bool at_the_noise = TypicalGap(proof.Best().near) < kNoiseAndAsMuchAgain;

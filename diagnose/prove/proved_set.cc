@@ -6,6 +6,7 @@
 
 #include "base/maths/spread.h"
 #include "diagnose/fit/closure.h"
+#include "diagnose/prove/proof_context.h"
 
 namespace hydro::diagnose {
 
@@ -121,6 +122,14 @@ bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given) {
   const GapFall near = FallOf(as_given.near, with.near);
   return near.windows == 0 ||
          (near.Exceeds(kPartOfValues) && !FallOf(with.far, as_given.far).Exceeds(kPartOfAnEffect));
+}
+
+bool TakesNextToNothing(const ProvedSet& with, const ProvedSet& without, const ProvedSet& values) {
+  // Of the squared gap: no machine's equations are true to better than a hundredth.
+  constexpr double kLeastShare = 0.01;
+  if (!with.tested() || !without.tested() || !values.tested()) return false;
+  const double left = TypicalGap(with.near), taken = TypicalGap(without.near) - left;
+  return left > kNoiseAndAsMuchAgain && taken < kLeastShare * (TypicalGap(values.near) - 1);
 }
 
 size_t LeadingSet(const std::vector<ProvedSet>& sets) {

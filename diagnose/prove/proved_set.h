@@ -74,6 +74,10 @@ inline constexpr double kEqual = 0.01;
 bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price);
 // The same for other values, compared with the model as given: worth kPartOfValues.
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given);
+// Whether much more than noise is left with the effect, and the effect takes less than a hundredth of the
+// squared gap that other `values` leave. Balances are sure of such an effect, because they are sure also of
+// what stands in for something else that is missing.
+bool TakesNextToNothing(const ProvedSet& with, const ProvedSet& without, const ProvedSet& values);
 
 // The place of the set that predicts the near windows best after the price of its effects. Of equal sets the
 // likelier proposal leads, then the first. Returns the number of sets where none can be tested.

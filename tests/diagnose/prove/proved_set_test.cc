@@ -44,6 +44,17 @@ ProvedSet SetOf(const std::vector<std::string>& effects, std::vector<WindowGap> 
 
 std::vector<WindowGap> Untested() { return std::vector<WindowGap>(kWindows); }
 
+// Tests what counts as next to nothing: less than a hundredth of the squared gap that other values leave,
+// while much more than noise is left; nothing that cannot be tested.
+TEST(EffectIsKept, NotForNextToNothing) {
+  const ProvedSet values = SetOf({}, Windows(20)), with = SetOf({"a", "b"}, Windows(10));
+  EXPECT_TRUE(TakesNextToNothing(with, SetOf({"a"}, Windows(10.15)), values));
+  EXPECT_TRUE(TakesNextToNothing(with, SetOf({"a"}, Windows(9)), values));
+  EXPECT_FALSE(TakesNextToNothing(with, SetOf({"a"}, Windows(10.25)), values));
+  EXPECT_FALSE(TakesNextToNothing(with, SetOf({"a"}, Untested()), values));
+  EXPECT_FALSE(TakesNextToNothing(SetOf({"a", "b"}, Windows(1.3)), SetOf({"a"}, Windows(1.35)), values));
+}
+
 // Tests that the fall is the mean logarithm of the gaps' ratio, with its error.
 TEST(GapFall, IsTheMeanLogarithm) {
   const GapFall fall = FallOf(Windows(5), Windows(4));
