@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/fit/closure.h"
@@ -33,6 +34,15 @@ ProofSets::ProofSets(const ProofContext& context, const Hypothesis& as_given,
       windows_(ProofWindowsOf(context)) {
   sets_.emplace_back().hypothesis = as_given;
   JudgeSet(windows_, context_.jobs, &sets_.back());
+  // A proposed effect is searched with the first set that has it, as the balances estimate it. Where the
+  // model as given has one itself, every set is searched: the turns that suit its wrong values mislead all
+  // others, as on a motor whose J was 18 % too small.
+  const std::vector<model::EffectDescription>& own = context.given.effects;
+  const bool repeats = std::any_of(own.begin(), own.end(), [](const model::EffectDescription& effect) {
+    return model::HasRole(effect.id, model::Role::kPeriods);
+  });
+  for (JudgingWindows* judging : {&windows_.near, &windows_.far})
+    if (!repeats) judging->turns = std::make_shared<KnownTurns>(judging->windows.size());
 }
 
 double ProofSets::SaidOf(const Change& effect) const {

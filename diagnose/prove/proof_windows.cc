@@ -79,7 +79,6 @@ void SetJudging(const std::vector<const RunData*>& predicted, const WindowPool& 
                                   [&](const RunData* one) { return one->name == window->name; });
     judging->runs.push_back(static_cast<size_t>(run - predicted.begin()));
   }
-  judging->turns = std::make_shared<KnownTurns>(judging->windows.size());
 }
 
 }  // namespace
