@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numeric>
 
 namespace hydro::maths {
@@ -50,6 +51,10 @@ std::vector<double> CentredRanks(const std::vector<double>& x) {
   return ranks;
 }
 
+double MeanOf(const std::vector<double>& y) {
+  return std::accumulate(y.begin(), y.end(), 0.0) / std::max(1.0, static_cast<double>(y.size()));
+}
+
 double SquaresAbout(const std::vector<double>& y, double mean) {
   return std::accumulate(y.begin(), y.end(), 0.0,
                          [=](double sum, double value) { return sum + (value - mean) * (value - mean); });
@@ -77,16 +82,21 @@ Estimate Share(int hits, int count) {
   return {share, std::max(0.0, centre - half), std::min(1.0, centre + half)};
 }
 
+double Correlation(const std::vector<double>& x, const std::vector<double>& y) {
+  const double of_x = MeanOf(x), of_y = MeanOf(y);
+  const double size = std::sqrt(SquaresAbout(x, of_x) * SquaresAbout(y, of_y));
+  const auto product = [=](double a, double b) { return (a - of_x) * (b - of_y); };
+  return size == 0 ? 0
+                   : std::inner_product(x.begin(), x.end(), y.begin(), 0.0, std::plus<>(), product) / size;
+}
+
 double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
-  const std::vector<double> first = CentredRanks(x);
-  const std::vector<double> second = CentredRanks(y);
-  const double size = std::sqrt(SquaresAbout(first, 0) * SquaresAbout(second, 0));
-  return size == 0 ? 0 : std::inner_product(first.begin(), first.end(), second.begin(), 0.0) / size;
+  return Correlation(CentredRanks(x), CentredRanks(y));
 }
 
 double MainEffect(const std::vector<double>& x, const std::vector<double>& y, int bins) {
   const auto count = static_cast<double>(y.size());
-  const double total = SquaresAbout(y, std::accumulate(y.begin(), y.end(), 0.0) / count);
+  const double total = SquaresAbout(y, MeanOf(y));
   if (total == 0) return 0;
   const std::vector<size_t> order = OrderOf(x);
   double within = 0;
@@ -95,8 +105,7 @@ double MainEffect(const std::vector<double>& x, const std::vector<double>& y, in
     const size_t end = (bin + 1) * order.size() / static_cast<size_t>(bins);
     std::vector<double> part;
     for (size_t i = begin; i < end; ++i) part.push_back(y[order[i]]);
-    within += SquaresAbout(part, std::accumulate(part.begin(), part.end(), 0.0) /
-                                     std::max(1.0, static_cast<double>(part.size())));
+    within += SquaresAbout(part, MeanOf(part));
   }
   return 1 - within / total * (count - 1) / (count - bins);
 }

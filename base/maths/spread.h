@@ -57,6 +57,9 @@ double Quantile(const std::vector<double>& sorted, double share);
 // Estimates a share from `hits` of `count` independent trials: Wilson's 95 % interval.
 Estimate Share(int hits, int count);
 
+// Pearson's correlation of two lists of equal length, -1 to 1. 0 when either list is constant.
+double Correlation(const std::vector<double>& x, const std::vector<double>& y);
+
 // Spearman's rank correlation of two lists of equal length, -1 to 1: how far y rises with x, along any curve.
 // Equal numbers share a rank. 0 when either list is constant.
 double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y);

@@ -14,17 +14,23 @@ namespace hydro::diagnose {
 
 namespace {
 
+// Appends the effect's numbers that have this role.
+void AddNumbers(const model::EffectDescription& effect, model::Role role, std::vector<double>* numbers) {
+  const model::EffectInfo* info = model::FindEffect(effect);
+  if (info == nullptr) return;
+  for (const model::ParameterInfo& parameter : info->parameters) {
+    if (parameter.role == role) numbers->push_back(effect.parameters.at(parameter.name));
+  }
+}
+
 // The longest period of the effects that repeat with the shaft, rad; 0 if there are none.
 double PeriodOf(const model::ModelDescription& model) {
+  std::vector<double> all;
+  for (const model::EffectDescription& effect : model.effects)
+    AddNumbers(effect, model::Role::kPeriods, &all);
   double longest = 0;
-  for (const model::EffectDescription& effect : model.effects) {
-    const model::EffectInfo* info = model::FindEffect(effect);
-    if (info == nullptr) continue;
-    for (const model::ParameterInfo& parameter : info->parameters) {
-      if (parameter.role != model::Role::kPeriods) continue;
-      const double periods = effect.parameters.at(parameter.name);
-      if (periods > 0) longest = std::max(longest, 2 * std::numbers::pi / periods);
-    }
+  for (const double periods : all) {
+    if (periods > 0) longest = std::max(longest, 2 * std::numbers::pi / periods);
   }
   return longest;
 }
@@ -72,14 +78,10 @@ model::StartState KnownTurns::Turned(size_t place, const model::ModelDescription
   if (!turn.has_value()) return start;
   Known now{};
   for (const model::EffectDescription& effect : model.effects) {
-    const model::EffectInfo* info = model::FindEffect(effect);
-    if (info == nullptr || !model::HasRole(effect.id, model::Role::kPeriods)) continue;
+    if (!model::HasRole(effect.id, model::Role::kPeriods)) continue;
     now.effects.push_back(effect.id);
-    for (const model::ParameterInfo& parameter : info->parameters) {
-      if (parameter.role == model::Role::kPeriods)
-        now.periods.push_back(effect.parameters.at(parameter.name));
-      if (parameter.role == model::Role::kPhase) now.phases.push_back(effect.parameters.at(parameter.name));
-    }
+    AddNumbers(effect, model::Role::kPeriods, &now.periods);
+    AddNumbers(effect, model::Role::kPhase, &now.phases);
   }
   model::StartState turned = start;
   for (const Known& known : known_[place]) {

@@ -79,15 +79,10 @@ std::optional<double> CorrelationOfBlocks(const std::vector<double>& x, const st
   if (x.size() < kFewestToCorrelate) return std::nullopt;
   const auto n = static_cast<double>(x.size());
   const double x_mean = std::accumulate(x.begin(), x.end(), 0.0) / n;
-  const double y_mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
-  double both = 0, of_x = 0, of_y = 0;
-  for (size_t i = 0; i < x.size(); ++i) {
-    both += (x[i] - x_mean) * (y[i] - y_mean);
-    of_x += (x[i] - x_mean) * (x[i] - x_mean);
-    of_y += (y[i] - y_mean) * (y[i] - y_mean);
-  }
-  if (!(std::sqrt(of_x / n) > least)) return std::nullopt;
-  return of_y > 0 ? both / std::sqrt(of_x * of_y) : 0;
+  double square = 0;
+  for (const double one : x) square += (one - x_mean) * (one - x_mean);
+  if (!(std::sqrt(square / n) > least)) return std::nullopt;
+  return maths::Correlation(x, y);
 }
 
 std::string WithHalfWidth(double value, double half) {

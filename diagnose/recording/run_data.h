@@ -104,12 +104,6 @@ void RequireArmInStroke(const runs::MeasuredRun& run, const model::ModelDescript
 // Throws InputError as CheckUsable() and RequireArmInStroke() do, and also when no signal can be compared
 // with a model, or when times or values are impossible (speeds of 1e5 rad/s point to another unit).
 RunData PrepareRun(runs::MeasuredRun run, const model::ModelDescription& model);
-// The same for a model without effects, whose sides are equal.
-inline RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
-  model::ModelDescription plain;
-  plain.parameters = model;
-  return PrepareRun(std::move(run), plain);
-}
 
 // Sets the run's start and start_free from its first samples. All other members of `data` must already be
 // filled in.

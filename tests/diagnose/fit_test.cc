@@ -12,6 +12,7 @@
 
 #include "diagnose/recording/windows.h"
 #include "model/terms/state.h"
+#include "tests/diagnose/prepare_run.h"
 #include "tests/diagnose/small_runs.h"
 #include "tests/model_in_units.h"
 

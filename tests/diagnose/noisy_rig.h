@@ -10,6 +10,7 @@
 
 #include "diagnose/recording/run_data.h"
 #include "model/response.h"
+#include "tests/diagnose/prepare_run.h"
 
 namespace hydro::testing {
 

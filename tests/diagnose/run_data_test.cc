@@ -13,6 +13,7 @@
 #include "model/terms/state.h"
 #include "runs/measured/sample_times.h"
 #include "tests/diagnose/noisy_rig.h"
+#include "tests/diagnose/prepare_run.h"
 #include "tests/table1.h"
 
 namespace hydro::diagnose {

@@ -8,6 +8,7 @@
 
 #include "diagnose/fit/intervals.h"
 #include "diagnose/fit/prior.h"
+#include "tests/diagnose/prepare_run.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

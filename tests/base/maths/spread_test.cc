@@ -39,6 +39,14 @@ TEST(SpreadTest, Shares) {
   EXPECT_DOUBLE_EQ(Share(10, 10).high, 1);
 }
 
+// Tests correlations that are known: of straight lines, of 1 to 4 with two exchanged, of a constant list.
+TEST(SpreadTest, Correlations) {
+  EXPECT_DOUBLE_EQ(Correlation({1, 2, 3}, {10, 30, 50}), 1);
+  EXPECT_DOUBLE_EQ(Correlation({1, 2, 3}, {5, 3, 1}), -1);
+  EXPECT_DOUBLE_EQ(Correlation({1, 2, 3, 4}, {1, 3, 2, 4}), 0.8);
+  EXPECT_EQ(Correlation({1, 2, 3}, {7, 7, 7}), 0);
+}
+
 // Tests rank correlations that are known: rising, falling and constant lists, a textbook's example (IQ and
 // hours of television, -29/165), and ties, whose ranks are their mean: x 1, 2.5, 2.5, 4 and y 1, 3, 2, 4 give
 // 4.5/sqrt(4.5 * 5).

@@ -8,6 +8,7 @@
 #include "diagnose/balances/masks.h"
 #include "model/terms/parameter_info.h"
 #include "tests/diagnose/balances/clean_runs.h"
+#include "tests/diagnose/prepare_run.h"
 
 namespace hydro::testing {
 namespace {

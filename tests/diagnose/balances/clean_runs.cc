@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "model/started_actuator.h"
+#include "tests/diagnose/prepare_run.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

@@ -13,6 +13,7 @@
 
 #include "diagnose/balances/rows_to_read.h"
 #include "tests/diagnose/balances/clean_runs.h"
+#include "tests/diagnose/prepare_run.h"
 
 namespace hydro::testing {
 namespace {

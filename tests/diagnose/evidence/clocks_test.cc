@@ -10,6 +10,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/recording_remarks.h"
 #include "runs/measured/sample_times.h"
+#include "tests/diagnose/prepare_run.h"
 #include "tests/diagnose/small_runs.h"
 #include "tests/table1.h"
 

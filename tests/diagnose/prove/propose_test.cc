@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "diagnose/prove/proposal.h"
+#include "tests/diagnose/prepare_run.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

@@ -8,6 +8,7 @@
 
 #include "diagnose/say/lacking.h"
 #include "tests/diagnose/noisy_rig.h"
+#include "tests/diagnose/prepare_run.h"
 #include "tests/table1.h"
 
 namespace hydro::diagnose {
