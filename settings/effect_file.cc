@@ -73,6 +73,9 @@ constexpr char kStatements[] = "a statement as \"arm_torque -= stiffness * alpha
 // The ids of curves through what no known effect explains.
 constexpr char kOfClosures[] = "closure.";
 
+// The key of an effect's section in a model's file that is no parameter (settings/effect_sections.cc).
+constexpr char kDefinition[] = "definition";
+
 constexpr size_t kMostNames = 256;  // of parameters, states and so on; an effect has a few
 
 // The names of the tables in a table. Throws InputError where there are more than any effect has.
@@ -87,6 +90,14 @@ std::vector<std::string> Keys(const TomlNode& table, const std::string& key) {
                    "up to " + std::to_string(kMostNames));
   for (const TomlMember& member : inner->members) keys.push_back(member.first);
   return keys;
+}
+
+// Reports and errors print these texts in the middle of a line, which a text of several lines would break.
+void ReadLine(SectionReader& section, const std::string& key, std::string* line) {
+  section.Text(key, line);
+  const auto breaks = [](unsigned char c) { return c != '\t' && std::iscntrl(c) != 0; };
+  if (std::any_of(line->begin(), line->end(), breaks))
+    throw section.Error(key, Quoted(*line), "one line, without control characters");
 }
 
 void ReadStarts(SectionReader& section, model::ParameterInfo* info) {
@@ -116,8 +127,8 @@ model::ParameterInfo ReadParameter(SectionReader section, const std::string& nam
   model::ParameterInfo info;
   info.name = name;
   info.unit = "1";
-  section.Text("unit", &info.unit);
-  section.Text("meaning", &info.meaning);
+  ReadLine(section, "unit", &info.unit);
+  ReadLine(section, "meaning", &info.meaning);
   section.Require("meaning", "a line that says what it is");
   ReadBound(section, "min", &info.min);
   ReadBound(section, "max", &info.max);
@@ -145,7 +156,7 @@ model::StateText ReadState(SectionReader section, const std::string& name) {
   model::StateText state;
   state.name = name;
   state.unit = "1";
-  section.Text("unit", &state.unit);
+  ReadLine(section, "unit", &state.unit);
   section.Text("rate", &state.rate);
   section.Require("rate", "a formula for its rate per second");
   section.Text("start", &state.start);
@@ -334,12 +345,17 @@ std::shared_ptr<const model::EffectFormulas> ReadFormulas(const TomlNode& table,
   info.id = id;
   section.Text("id", &info.id);
   if (id.empty()) section.Require("id", "the effect's id, as \"arm.spring\"");
-  section.Text("summary", &info.summary);
+  ReadLine(section, "summary", &info.summary);
   section.Require("summary", "a line that says what the effect is; reports print it");
-  section.Text("confused_with", &info.confused_with);
+  ReadLine(section, "confused_with", &info.confused_with);
   section.Boolean("remembers_flow", &info.remembers_flow);
   SectionReader parameters = section.Section("parameters");
   for (const std::string& name : Keys(table, "parameters")) {
+    // The values stand beside the definition in a model, and one key cannot be both.
+    if (name == kDefinition)
+      throw parameters.Error(
+          name, "it as the name of a parameter",
+          "another name: in a model's file, the effect's section has its definition there");
     info.parameters.push_back(ReadParameter(parameters.Section(name), name));
   }
   parameters.Finish();

@@ -113,7 +113,7 @@ void FormulaCompiler::AddWhere() {
     try {
       where_[name] = ParseExpression(formula);
     } catch (const FormulaError& error) {
-      throw EffectTextError("where." + name, std::string(error.what()) + " of \"" + formula + '"');
+      throw EffectTextError("where." + name, std::string(error.what()) + " of " + ShortQuote(formula));
     }
   }
 }
@@ -124,18 +124,20 @@ void FormulaCompiler::CheckNewName(const std::string& key, const std::string& na
                      PlaceOf(StartNames(), name) || PlaceOf(ReadingNames(), name) ||
                      PlaceOf(FunctionNames(), name) || name == "t" || name == "pi" || name == kBuiltIn;
   if (taken)
-    throw EffectTextError(key, "found \"" + name + "\", which the model has already, allowed another name");
+    throw EffectTextError(
+        key, "found " + ShortQuote(name) + ", which the model has already, allowed another name");
   const size_t count = (OwnPlace(info_, name, true) ? 1 : 0) + (OwnPlace(info_, name, false) ? 1 : 0) +
                        (PlaceIn(text_.states, name) ? 1 : 0) + (PlaceIn(text_.switches, name) ? 1 : 0) +
                        static_cast<size_t>(std::count_if(text_.where.begin(), text_.where.end(),
                                                          [&](const auto& one) { return one.first == name; }));
-  if (count > 1) throw EffectTextError(key, "found \"" + name + "\" twice, allowed one meaning for a name");
+  if (count > 1)
+    throw EffectTextError(key, "found " + ShortQuote(name) + " twice, allowed one meaning for a name");
   try {
     if (ParseExpression(name).operation == Operation::kName && name.back() != '\'') return;
   } catch (const FormulaError&) {  // reported below
   }
-  throw EffectTextError(key,
-                        "found the name \"" + name + "\", allowed letters, digits and _, a letter first");
+  throw EffectTextError(
+      key, "found the name " + ShortQuote(name) + ", allowed letters, digits and _, a letter first");
 }
 
 NameMeaning FormulaCompiler::FieldMeaning(const std::string& name, size_t place, size_t column,
@@ -196,7 +198,7 @@ NameMeaning FormulaCompiler::MeaningOf(const std::string& given, size_t column, 
     const auto place = PlaceIn(text_.states, name.substr(0, name.size() - 1));
     if (place.has_value()) return meaning(Source::kOwnRate, *place, false);
   }
-  throw FormulaError(column, "the unknown name \"" + given + '"',
+  throw FormulaError(column, "the unknown name " + ShortQuote(given),
                      std::string("the effect's own names, and those of the model that are known ") +
                          HookText(hook) + DidYouMean(given, NamesAt(hook)));
 }
@@ -264,7 +266,7 @@ uint16_t FormulaCompiler::Emit(const Expression& expression, Context& context) {
   } else if (expression.operation == Operation::kName) {
     place = EmitName(expression, context);
   } else if (expression.operation == Operation::kText) {
-    throw FormulaError(expression.column, "the text \"" + expression.name + '"',
+    throw FormulaError(expression.column, "the text " + ShortQuote(expression.name),
                        "one that is compared with a parameter that is a name: signal == \"p1\"");
   } else {
     place = EmitOperation(expression, context);
@@ -351,14 +353,14 @@ uint16_t FormulaCompiler::EmitChoice(const Expression& expression, Context& cont
   const std::optional<size_t> place =
       name.operation == Operation::kName ? OwnPlace(info_, name.name, false) : std::nullopt;
   if (!place.has_value()) {
-    throw FormulaError(text.column, "the text \"" + text.name + '"',
+    throw FormulaError(text.column, "the text " + ShortQuote(text.name),
                        "it beside a parameter of the effect that is a name");
   }
   const auto parameter = std::find_if(info_.parameters.begin(), info_.parameters.end(),
                                       [&](const ParameterInfo& one) { return one.name == name.name; });
   const std::optional<size_t> choice = PlaceOf(parameter->names, text.name);
   if (!choice.has_value()) {
-    throw FormulaError(text.column, "the text \"" + text.name + '"',
+    throw FormulaError(text.column, "the text " + ShortQuote(text.name),
                        "one of the names of \"" + name.name + '"' + DidYouMean(text.name, parameter->names));
   }
   const uint16_t is = Push({.kind = Instruction::Kind::kLoad,
@@ -382,7 +384,7 @@ void FormulaCompiler::AppendValue(const std::string& key, const std::string& tex
   try {
     PushStore(Emit(ParseExpression(text), context), to, place, context);
   } catch (const FormulaError& error) {
-    throw EffectTextError(key, std::string(error.what()) + " of \"" + text + '"');
+    throw EffectTextError(key, std::string(error.what()) + " of " + ShortQuote(text));
   }
 }
 
@@ -392,7 +394,7 @@ void FormulaCompiler::Append(const std::string& key, const std::string& statemen
   try {
     AppendStatement(ParseStatement(statement), context);
   } catch (const FormulaError& error) {
-    throw EffectTextError(key, std::string(error.what()) + " of \"" + statement + '"');
+    throw EffectTextError(key, std::string(error.what()) + " of " + ShortQuote(statement));
   }
 }
 
@@ -422,7 +424,7 @@ void FormulaCompiler::AppendStatement(const Statement& statement, Context& conte
     std::vector<std::string> names;
     for (const FieldName& one : FieldNames()) names.emplace_back(one.name);
     names.resize(kFirstFixed);
-    throw FormulaError(1, "a change of \"" + statement.target + '"',
+    throw FormulaError(1, "a change of " + ShortQuote(statement.target),
                        std::string("one of what effects may change ") + HookText(context.hook) +
                            " (docs/effects.md)" + DidYouMean(statement.target, names));
   }
@@ -450,7 +452,7 @@ Hook FormulaCompiler::HookOf(const std::string& key, const std::string& statemen
     return place.has_value() ? FieldNames()[*place].known
                              : Hook::kTorquesAndFlows;  // where an unknown one is reported
   } catch (const FormulaError& error) {
-    throw EffectTextError(key, std::string(error.what()) + " of \"" + statement + '"');
+    throw EffectTextError(key, std::string(error.what()) + " of " + ShortQuote(statement));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "base/utf8.h"
 #include "base/word_list.h"
 
 namespace hydro::model {
@@ -14,6 +15,7 @@ namespace {
 constexpr size_t kLongest = 8192;  // characters; a longer text has too many operations anyway
 // No formula written by a person nests deeper, and a text that does must not exhaust the stack.
 constexpr int kDeepest = 64;
+constexpr size_t kLongestQuote = 60;  // bytes of a formula in a message; line and column say the rest
 
 struct Function {
   std::string_view name;
@@ -115,7 +117,7 @@ class Parser {
   }
 
   FormulaError Unexpected(const std::string& allowed) const {
-    return {begin_ + 1, token_.empty() ? "the end" : "\"" + token_ + "\"", allowed};
+    return {begin_ + 1, token_.empty() ? "the end" : ShortQuote(token_), allowed};
   }
 
   Expression Joined(Operation operation, size_t column, std::vector<Expression> operands) const {
@@ -249,7 +251,7 @@ class Parser {
     }
     std::string all;
     for (const std::string& name : FunctionNames()) all += (all.empty() ? "" : ", ") + name;
-    throw FormulaError(function.column, "the unknown function \"" + function.name + "\"",
+    throw FormulaError(function.column, "the unknown function " + ShortQuote(function.name),
                        all + DidYouMean(function.name, FunctionNames()));
   }
 
@@ -264,6 +266,15 @@ class Parser {
 Expression ParseExpression(const std::string& text) { return Parser(text).Whole(); }
 
 Statement ParseStatement(const std::string& text) { return Parser(text).WholeStatement(); }
+
+std::string ShortQuote(std::string_view text) {
+  std::string quote = "\"" + std::string(FirstBytes(text, kLongestQuote));
+  if (text.size() > kLongestQuote) quote += "...";
+  for (char& c : quote) {
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = ' ';
+  }
+  return quote + '"';
+}
 
 const std::vector<std::string>& FunctionNames() {
   static const std::vector<std::string> names = [] {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hydro::model {
@@ -72,6 +73,9 @@ struct Statement {
 // functions and pi. Throws FormulaError.
 Expression ParseExpression(const std::string& text);
 Statement ParseStatement(const std::string& text);
+
+// `text` in quotes for the one line of a message: what is long is cut, and line breaks become blanks.
+std::string ShortQuote(std::string_view text);
 
 // The names of the functions, for messages and documentation.
 const std::vector<std::string>& FunctionNames();

@@ -271,6 +271,24 @@ TEST_F(EffectFileTest, HostileFormulas) {
   EXPECT_THAT(ErrorOfEquation("load = "), HasSubstr("found the end"));
 }
 
+// Tests that an error quotes the beginning of a long formula or name, on one line.
+TEST_F(EffectFileTest, LongFormulasAreCut) {
+  using ::testing::EndsWith;
+  using ::testing::HasSubstr;
+  const std::string x(400'000, 'x'), start(60, 'x');
+  EXPECT_THAT(ErrorOfEquation("load += " + x), EndsWith(" of \"load += " + start.substr(8) + "...\""));
+  EXPECT_THAT(ErrorOfEquation("load += y", "where = { y = '" + x + "' }\n"),
+              EndsWith(" of \"" + start + "...\""));
+  const std::string name(8000, 'x');
+  for (const std::string& equation :
+       {"load += " + name, "load += " + name + "(1)", name + " += 1", "1 " + name})
+    EXPECT_LT(ErrorOfEquation(equation).size(), 600u) << equation.substr(0, 12);
+  EXPECT_THAT(ErrorOfEquation("load += y", "where = { \"" + name + "-\" = 'alpha' }\n"),
+              HasSubstr("found the name \"" + start + "...\", allowed letters"));
+  // Three quotes begin a text of several lines.
+  EXPECT_THAT(ErrorOfEquation("''load +=\n stifness''"), EndsWith(" of \"load +=  stifness\""));
+}
+
 // Tests that ids, parameters and states are checked, and unknown keys named.
 TEST_F(EffectFileTest, TheRestOfTheFile) {
   using ::testing::HasSubstr;
@@ -287,10 +305,31 @@ TEST_F(EffectFileTest, TheRestOfTheFile) {
   EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "role = \"periods\"\n"), HasSubstr("Role::kPeriods"));
   EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "[parameters.alpha]\nmeaning = \"m\"\n"),
               HasSubstr("found \"alpha\", which the model has already"));
+  // A model's section of the effect has the definition under this key, beside the values.
+  EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "[parameters.definition]\nmeaning = \"m\"\n"),
+              HasSubstr(":6: parameters.definition: found it as the name of a parameter, allowed another"));
   EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "[states.z]\nunit = \"1\"\n"),
               HasSubstr("states.z.rate: found nothing"));
   EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "[switches.z]\nmargin = \"1\"\n"),
               HasSubstr("switches.z.next: found nothing"));
+}
+
+// Tests that what reports print in the middle of a line is one line.
+TEST_F(EffectFileTest, LinesThatAreTwo) {
+  using ::testing::HasSubstr;
+  const std::string begin = "id = \"a.b\"\nequation = \"load += k\"\n";
+  const std::string parameter = "[parameters.k]\nmeaning = \"m\"\n";
+  const std::string good = "summary = \"s\"\n";
+  EXPECT_EQ(ErrorOf(begin + "summary = \"s\\tt\"\n" + parameter), "no error");
+  EXPECT_THAT(ErrorOf(begin + "summary = \"s\\nt\"\n" + parameter),
+              HasSubstr(":3: summary: found \"s\\nt\", allowed one line, without control characters"));
+  EXPECT_THAT(ErrorOf(begin + "summary = \"s\\u001b[2J\"\n" + parameter), HasSubstr("summary: found"));
+  EXPECT_THAT(ErrorOf(begin + good + "confused_with = \"a\\nb\"\n" + parameter),
+              HasSubstr("confused_with: found"));
+  EXPECT_THAT(ErrorOf(begin + good + parameter + "unit = \"N\\nm\"\n"),
+              HasSubstr(":6: parameters.k.unit: found"));
+  EXPECT_THAT(ErrorOf(begin + good + "[parameters.k]\nmeaning = \"m\\nn\"\n"),
+              HasSubstr(":5: parameters.k.meaning: found"));
 }
 
 // Tests that a formula that gives what is no number ends the simulation: the pump would stick for ever.
