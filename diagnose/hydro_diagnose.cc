@@ -222,9 +222,17 @@ std::vector<std::string> SplitPerRun(const std::string& text) {
                    QuotedList(allowed));
 }
 
-Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const model::ModelDescription& model,
-                          const Diagnoser& diagnose, const ProgressCallback& report_progress,
-                          bool* motor_alone) {
+// --check needs none of these, and refuses what a diagnosis would: who tries a command line with it before a
+// long search wants to know.
+DiagnoseOptions OptionsOf(const DiagnoseRequest& request) {
+  if (request.seed < 0) {
+    throw InputError("--seed: found " + std::to_string(request.seed) +
+                     ", allowed a whole number of at least 0");
+  }
+  if (!(request.time_limit > 0)) {
+    throw InputError("--time-limit: found " + ShortestNumber(request.time_limit) +
+                     ", allowed seconds above 0");
+  }
   DiagnoseOptions options;
   if (!request.effects.empty()) {
     options.effects = ReadEffectList(request.effects);
@@ -235,6 +243,12 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const model::ModelDesc
   options.jobs = request.jobs;
   options.time_limit = request.time_limit;
   options.seed = static_cast<uint64_t>(request.seed);
+  return options;
+}
+
+Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const model::ModelDescription& model,
+                          const DiagnoseOptions& options, const Diagnoser& diagnose,
+                          const ProgressCallback& report_progress, bool* motor_alone) {
   report_progress({"reading the runs", 0});
   ReadFiles fitted, rest;
   ReadAllRuns(request, model.units, &fitted, &rest);
@@ -332,6 +346,7 @@ std::vector<std::string> SplitNames(const std::string& option, const std::string
 
 int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   RequireJobs(request);
+  OptionsOf(request);
   RequireDifferentFiles(request);
   const model::ModelDescription model = settings::LoadModelFile(request.model);
   ReadFiles fitted, held_out;
@@ -368,14 +383,7 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
     throw InputError(
         "--out: found nothing, allowed a folder that can be written; it is needed without --check");
   }
-  if (request.seed < 0) {
-    throw InputError("--seed: found " + std::to_string(request.seed) +
-                     ", allowed a whole number of at least 0");
-  }
-  if (!(request.time_limit > 0)) {
-    throw InputError("--time-limit: found " + ShortestNumber(request.time_limit) +
-                     ", allowed seconds above 0");
-  }
+  const DiagnoseOptions options = OptionsOf(request);
   RequireDifferentFiles(request);
   RequireFilesKept(request);
   const ReportFolder folder(request.folder);
@@ -391,7 +399,7 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
     const bool terminal = isatty(fileno(err)) != 0;
     ProgressBar bar(err, terminal);
     diagnosis = ReadAndDiagnose(
-        request, given, diagnose, [&](const Progress& progress) { bar.Show(progress, elapsed()); },
+        request, given, options, diagnose, [&](const Progress& progress) { bar.Show(progress, elapsed()); },
         &motor_alone);
     bar.Show({"writing the report", 1}, elapsed());
   }

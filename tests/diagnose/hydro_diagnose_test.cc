@@ -331,6 +331,36 @@ TEST_F(HydroDiagnoseTest, Errors) {
   EXPECT_THAT(effects(""), HasSubstr("effects: found nothing"));
 }
 
+// Tests that --check refuses the options that a diagnosis refuses, and prints nothing then.
+TEST_F(HydroDiagnoseTest, CheckRefusesWhatADiagnosisDoes) {
+  Write("no_list.toml", "effects = 3\n");
+  const std::vector<std::pair<std::string, std::function<void(DiagnoseRequest&)>>> wrong = {
+      {"--jobs: found 0", [](DiagnoseRequest& r) { r.jobs = 0; }},
+      {"--time-limit: found 0", [](DiagnoseRequest& r) { r.time_limit = 0; }},
+      {"--seed: found -1", [](DiagnoseRequest& r) { r.seed = -1; }},
+      {"--free: found \"pump.stribeck\"", [](DiagnoseRequest& r) { r.free = "pump.stribeck"; }},
+      {"--free: found \"\"", [](DiagnoseRequest& r) { r.free = "b,,T_s"; }},
+      {"--per-run: found \"zzz\"", [](DiagnoseRequest& r) { r.per_run = "zzz"; }},
+      {"none: ", [&](DiagnoseRequest& r) { r.effects = Path("none"); }},
+      {"no_list.toml:1: effects: found 3", [&](DiagnoseRequest& r) { r.effects = Path("no_list.toml"); }}};
+  const DiagnoseRequest good = request_;
+  for (const auto& [said, change] : wrong) {
+    DiagnoseRequest request = good;
+    request.check = true;
+    change(request);
+    std::FILE* out = std::tmpfile();
+    try {
+      CheckRuns(request, out);
+      ADD_FAILURE() << said << " is not refused";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(said));
+      EXPECT_EQ(error.what(), ErrorOf(request));
+    }
+    EXPECT_EQ(std::ftell(out), 0);
+    std::fclose(out);
+  }
+}
+
 // Tests that no report replaces what it was made from.
 TEST_F(HydroDiagnoseTest, KeepsItsInputs) {
   request_.folder = folder_;
