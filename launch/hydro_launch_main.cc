@@ -46,7 +46,7 @@ void AddOptions(hydro::settings::CommandLine* line, Options* options) {
                   "REPORT.json write how the loops kept time (periods, latencies, missed deadlines of every "
                   "process) when the run ends; "
                   "REPORT.html beside it has the plots (docs/timing.md)");
-  line->AddFlag("--quiet", &options->request.quiet, "print errors only");
+  line->AddFlag("--quiet", &options->request.quiet, "print errors and warnings only");
   line->AddFlag("--json", &options->request.json,
                 "print a JSON object a line: each line of the processes, how they are doing twice a second, "
                 "the exit code");

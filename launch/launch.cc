@@ -1,5 +1,6 @@
 #include "launch/launch.h"
 
+#include <stdlib.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -21,6 +22,7 @@
 #include "launch/terminal_report.h"
 #include "process/own_program.h"
 #include "process/stack_bus.h"
+#include "process/stderr_log.h"
 #include "process/stop_socket.h"
 #include "settings/limb_config.h"
 #include "settings/stack_config.h"
@@ -120,6 +122,7 @@ int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const La
 
 int LaunchStack(const LaunchRequest& request) {
   const settings::StackConfig config = settings::LoadCommonConfig(request.config_file, request.overrides);
+  if (request.quiet) setenv(process::kQuiet, "1", 1);  // before the plan, which holds the environments
   const LaunchPlan plan = PlanLaunch(config, request, process::OwnFolder());
   CheckLog(plan, request.log_file);
   if (!plan.timing_file.empty()) {

@@ -17,7 +17,7 @@ struct LaunchRequest {
   bool force = false;                  // --force: the logger may replace a log
   std::string host;                    // --host; empty: every process runs on this machine
   std::string timing_file;             // --timing; empty: no report
-  bool quiet = false;                  // --quiet: errors only
+  bool quiet = false;                  // --quiet: errors and warnings only
   bool json = false;                   // --json: one JSON object a line
 };
 

@@ -34,7 +34,7 @@ class TimingFiles {
 
 struct ReportStyle {
   bool status = false;  // draws the state of the processes below the other lines
-  bool quiet = false;   // errors only
+  bool quiet = false;   // errors and warnings only
   bool json = false;    // a JSON object a line
 };
 

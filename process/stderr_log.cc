@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <mutex>
 #include <string_view>
 
@@ -77,6 +78,7 @@ StderrLog::StderrLog(const std::string& name) : sink_(std::make_shared<Sink>()) 
   spdlog::set_default_logger(std::make_shared<spdlog::async_logger>(
       name, sink_, spdlog::thread_pool(), spdlog::async_overflow_policy::overrun_oldest));
   spdlog::set_pattern("%H:%M:%S.%e %n: %v");
+  spdlog::set_level(std::getenv(kQuiet) != nullptr ? spdlog::level::warn : spdlog::level::info);
 }
 
 StderrLog::~StderrLog() {

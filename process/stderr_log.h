@@ -7,6 +7,10 @@
 
 namespace hydro::process {
 
+// An environment variable. Where it is set, only errors and warnings are written: hydro-launch --quiet sets
+// it for all that it starts, own programs too.
+inline constexpr char kQuiet[] = "HYDRO_QUIET";
+
 // While this object exists, spdlog's default logger writes to stderr from its own thread: a stopped terminal
 // or a full pipe blocks that thread, not the loop. At most 256 lines wait; beyond that the oldest are
 // dropped. The destructor writes the lines that still wait, but gives up on a reader that takes nothing for a

@@ -2,6 +2,7 @@
 // what it does from the environment variable HYDRO_FAKE_<role>: commands separated by ';'. The bus is at
 // HYDRO_FAKE_URL.
 //   say TEXT           a line on stdout         complain TEXT   a line on stderr
+//   quiet              says on stderr whether HYDRO_QUIET is set
 //   pid                prints "pid N"           arguments       prints "arguments ..." as it was called
 //   print N            N lines on each of stdout and stderr, cut at odd places
 //   endless            one line without an end, and no newline
@@ -58,6 +59,8 @@ class FakeProgram {
     std::getline(words >> std::ws, rest);
     if (verb == "say") Say(all);
     if (verb == "complain") dprintf(STDERR_FILENO, "%s\n", all.c_str());
+    if (verb == "quiet")
+      dprintf(STDERR_FILENO, "%s\n", getenv("HYDRO_QUIET") != nullptr ? "quiet" : "not quiet");
     if (verb == "pid") Say("pid " + std::to_string(getpid()));
     if (verb == "arguments") {
       std::string text = "arguments";

@@ -33,6 +33,19 @@ TEST(LaunchTest, PlantEndsTheRun) {
   EXPECT_THAT(launch->err(), IsEmpty());
 }
 
+// Tests that --quiet leaves out the lines on stdout, and asks each process for errors alone.
+TEST(LaunchTest, QuietAsksTheProcessesToo) {
+  for (const bool quiet : {true, false}) {
+    StackFolder stack;
+    stack.Script("plant", std::string("quiet;") + kShortRun);
+    auto launch = stack.Launch(quiet ? std::vector<std::string>{"--quiet"} : std::vector<std::string>{});
+    EXPECT_EQ(launch->WaitForExit(), 0) << launch->text();
+    EXPECT_EQ(launch->out().empty(), quiet) << launch->text();
+    EXPECT_THAT(launch->err(),
+                ::testing::ElementsAre(quiet ? "[plant]         quiet" : "[plant]         not quiet"));
+  }
+}
+
 // Tests that the launch says when all are ready.
 TEST(LaunchTest, SaysWhenAllAreReady) {
   StackFolder stack;

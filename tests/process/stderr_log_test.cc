@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -48,6 +49,23 @@ TEST_F(StderrLogTest, EscapesControlCharacters) {
   EXPECT_NE(line.find(" hydro-test: from \\x1b[2J\\x0d\\x0ahydro-plant: \\xff\\xc2\\x9b!\n"),
             std::string::npos)
       << line;
+}
+
+// Tests that what is no error stays out where hydro-launch --quiet asks for that.
+TEST_F(StderrLogTest, Quiet) {
+  // A line each, because the small pipe holds no more.
+  const auto written = [this](spdlog::level::level_enum level) {
+    {
+      const StderrLog log("hydro-test");
+      spdlog::log(level, "some words");
+    }
+    return Read().find("some words") != std::string::npos;
+  };
+  setenv(kQuiet, "1", 1);
+  EXPECT_FALSE(written(spdlog::level::info));
+  EXPECT_TRUE(written(spdlog::level::warn));
+  unsetenv(kQuiet);
+  EXPECT_TRUE(written(spdlog::level::info));
 }
 
 // Tests that a stopped terminal (nobody reads the pipe) does not keep a process from ending.
