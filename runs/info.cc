@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <tuple>
 
+#include "base/input_error.h"
 #include "base/integers.h"
 #include "base/units.h"
 #include "bus/channels.h"
@@ -115,14 +117,16 @@ void AddSignal(const std::string& name, const std::string& unit, double scale,
   if (!messages.empty()) signals.push_back(std::move(info));
 }
 
-// A unit of the paper, converted to the model's system or to SI.
-SiUnit ShownUnit(const UnitSystem& units, const std::string& paper, int arm, bool si) {
-  const std::string own = units.UnitFor(paper, arm);
+// A unit of the paper, converted to the model's system or to SI; "" where nothing tells that system.
+SiUnit ShownUnit(const std::optional<UnitSystem>& units, const std::string& paper, int arm, bool si) {
+  if (!units) return SiUnit{"", "", 1};
+  const std::string own = units->UnitFor(paper, arm);
   const std::optional<SiUnit> shown = si ? FindSiUnit(own, 0) : std::nullopt;
   return shown.value_or(SiUnit{own, own, 1});
 }
 
-std::vector<SignalInfo> SignalsOf(const RunMessages& messages, const UnitSystem& units, bool si) {
+std::vector<SignalInfo> SignalsOf(const RunMessages& messages, const std::optional<UnitSystem>& units,
+                                  bool si) {
   const SiUnit pressure = ShownUnit(units, "psi", 0, si);
   const SiUnit arm_angle = ShownUnit(units, "rad", 1, si), arm_speed = ShownUnit(units, "rad/s", 1, si);
   std::vector<SignalInfo> signals;
@@ -232,22 +236,47 @@ std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
   return distinct;
 }
 
+// Nothing where the description is damaged; `fault` then says how.
+std::optional<UnitSystem> UnitsOf(const run_description_t& description, const std::string& file,
+                                  std::string* fault) {
+  try {
+    return ModelUnits(description, file);
+  } catch (const InputError& error) {
+    if (fault->empty()) *fault = error.what();
+    return std::nullopt;
+  }
+}
+
 // The details of each of several runs.
-std::vector<SenderInfo> SendersOf(const RunLog& log, const UnitSystem& units, bool si) {
+std::vector<SenderInfo> SendersOf(const RunLog& log, const std::optional<UnitSystem>& units, bool si,
+                                  std::string* fault) {
   std::vector<SenderInfo> senders;
   for (const SenderMessages& run : RunsIn(log.messages)) {
     SenderInfo& sender = senders.emplace_back();
     sender.session = run.session;
-    UnitSystem own = units;
+    std::optional<UnitSystem> own = units;
     for (const run_description_t& description : run.messages.Of<run_description_t>()) {
       if (description.session != run.session) continue;
-      own = ModelUnits(description, log.file);
+      own = UnitsOf(description, log.file, fault);
       sender.description = description.program + ", seed " + std::to_string(description.seed);
     }
     sender.ticks = TicksOf(run.messages);
     sender.signals = SignalsOf(run.messages, own, si);
   }
   return senders;
+}
+
+// Returns the units of the run's model. What the log holds shows without a description, too.
+std::optional<UnitSystem> ReadDescription(const run_description_t& description, const std::string& file,
+                                          LogInfo* info) {
+  const std::optional<UnitSystem> units = UnitsOf(description, file, &info->description_fault);
+  try {
+    if (units) info->model_name = ModelName(description, file);
+    info->config = ConfigEntries(description, file);
+  } catch (const InputError& error) {
+    if (info->description_fault.empty()) info->description_fault = error.what();
+  }
+  return units;
 }
 
 // The duration by the clock that stamped the messages, without its steps. A clock that goes back where two
@@ -287,15 +316,11 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.tunings = TuningSteps(log.messages);
   info.outputs_left = OutputsLeft(log.messages);
   info.descriptions = DistinctDescriptions(log.messages.Of<run_description_t>());
-  UnitSystem units;
-  if (!info.descriptions.empty()) {
-    units = ModelUnits(info.descriptions.front(), log.file);
-    info.model_name = ModelName(info.descriptions.front(), log.file);
-    info.config = ConfigEntries(info.descriptions.front(), log.file);
-  }
+  std::optional<UnitSystem> units = UnitSystem{};
+  if (!info.descriptions.empty()) units = ReadDescription(info.descriptions.front(), log.file, &info);
   info.several_runs = HoldsSeveralRuns(log.messages);
   if (info.several_runs) {
-    info.senders = SendersOf(log, units, si);
+    info.senders = SendersOf(log, units, si, &info.description_fault);
   } else {
     info.ticks = TicksOf(log.messages);
     info.signals = SignalsOf(log.messages, units, si);

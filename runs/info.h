@@ -91,7 +91,8 @@ struct LogInfo {
   std::vector<TuningStep> tunings;              // changes of values while the run went on
   std::vector<output_left_t> outputs_left;      // the outputs that plants or drivers left when they ended
   std::vector<run_description_t> descriptions;  // each distinct one once
-  std::string model_name;                       // of the first description
+  std::string description_fault;  // why it cannot be read; without the model, signals have no units
+  std::string model_name;         // of the first description
   std::vector<std::pair<std::string, std::string>> config;  // of the first description
 };
 

@@ -146,6 +146,7 @@ std::string InfoJson(const LogInfo& info) {
   json["messages"] = info.events;
   json["duration_s"] = info.duration_s;
   json["runs"] = ListJson(info.descriptions, RunJson);
+  if (!info.description_fault.empty()) json["description_fault"] = info.description_fault;
   json["model_name"] = info.model_name;
   json["config"] = Json::object();
   for (const auto& [key, value] : info.config) json["config"][key] = value;

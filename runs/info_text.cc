@@ -49,6 +49,7 @@ void AppendDescriptions(const LogInfo& info, std::string& text) {
            description.version, description.host, description.config_file,
            description.model_file.empty() ? "none" : description.model_file, description.seed);
   }
+  if (!info.description_fault.empty()) Append(text, "run: not known: {}\n", info.description_fault);
   if (!info.model_name.empty()) Append(text, "model: {}\n", info.model_name);
   for (const ProgramInfo& program : info.programs) {
     Append(text, "process: {} {} on {}\n", program.role, program.version, program.host);
@@ -110,7 +111,7 @@ void AppendSignals(const std::vector<SignalInfo>& signals, std::string& text) {
   if (signals.empty()) return;
   Append(text, "{:<32} {:>12} {:>12} {:>12}\n", "signal", "min", "max", "last");
   for (const SignalInfo& signal : signals) {
-    const std::string name = signal.name + " (" + signal.unit + ")";
+    const std::string name = signal.name + (signal.unit.empty() ? "" : " (" + signal.unit + ")");
     if (signal.count == 0) {
       Append(text, "{:<32} {:>12}\n", name, "none");
     } else {

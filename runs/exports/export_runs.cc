@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -99,7 +100,7 @@ std::string NameFor(const Recording& recording, const std::vector<ExportedRun>& 
   return name;
 }
 
-void Describe(const Recording& recording, const UnitSystem& units, bool si, ExportedRun* run) {
+void Describe(const Recording& recording, const std::optional<UnitSystem>& units, bool si, ExportedRun* run) {
   const auto fact = [&](const char* name, const std::string& value) {
     if (!value.empty()) run->facts.emplace_back(name, value);
   };
@@ -111,9 +112,11 @@ void Describe(const Recording& recording, const UnitSystem& units, bool si, Expo
   fact("log_is", log::NameOf(recording.log.verdict.completeness));
   fact("channel_suffix", recording.log.suffix);
   fact("joint", recording.log.joint);
-  fact("units", si ? "SI"
-                   : "length " + std::string(units.length) + ", force " + std::string(units.force) +
-                         ", pressure " + units.UnitFor("psi"));
+  if (units) {
+    fact("units", si ? "SI"
+                     : "length " + std::string(units->length) + ", force " + std::string(units->force) +
+                           ", pressure " + units->UnitFor("psi"));
+  }
   const auto& descriptions = recording.log.messages.Of<run_description_t>();
   if (descriptions.empty()) return;
   const run_description_t& description = descriptions.front();
@@ -128,9 +131,24 @@ void Describe(const Recording& recording, const UnitSystem& units, bool si, Expo
   run->model_text = description.model_text;
 }
 
-UnitSystem UnitsOf(const Recording& recording) {
+// Nothing where the run's model is damaged and messages are asked for, which have a meaning without it.
+std::optional<UnitSystem> UnitsOf(const Recording& recording, const Selection& selection, const Say& say) {
   const auto& descriptions = recording.log.messages.Of<run_description_t>();
-  return descriptions.empty() ? UnitSystem{} : runs::ModelUnits(descriptions.front(), recording.log.file);
+  if (descriptions.empty()) return UnitSystem{};
+  try {
+    return runs::ModelUnits(descriptions.front(), recording.log.file);
+  } catch (const InputError& error) {
+    if (selection.si || (WantsTable(selection) && !selection.all)) throw;
+    say(std::string(error.what()) + "; exported without " + (selection.all ? "the run's table and " : "") +
+        "units");
+    return std::nullopt;
+  }
+}
+
+// Names the columns' units, or none where they are not known.
+void SetUnits(const std::optional<UnitSystem>& units, bool si, Sheet* sheet) {
+  if (units) return SetUnits(*units, si, sheet);
+  for (SheetColumn& column : sheet->columns) column.field.unit.clear();
 }
 
 // Adds the run's table. When all channels are exported, the table may be missing, and a line says so.
@@ -151,9 +169,9 @@ ExportedRun Export(const Recording& recording, const std::string& name, const Se
   ExportedRun run;
   run.name = name;
   run.files = recording.files;
-  const UnitSystem units = UnitsOf(recording);
+  const std::optional<UnitSystem> units = UnitsOf(recording, selection, say);
   Describe(recording, units, selection.si, &run);
-  if (WantsTable(selection)) AddTable(recording, selection, say, &run);
+  if (units && WantsTable(selection)) AddTable(recording, selection, say, &run);
   const bool table = !run.sheets.empty();
   std::vector<std::string> channels = ChosenChannels(selection, recording.log);
   const std::string states(bus::RowOf<state_t>().channel);

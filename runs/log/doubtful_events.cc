@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "hydro/run_description_t.hpp"
 #include "runs/log/log_reader.h"
 #include "runs/log/message_kinds.h"
 
@@ -21,7 +22,20 @@ struct Message {
   const MessageKind* kind;
   bool complete;
   std::optional<int64_t> session;
+  std::string_view description;  // what a run_description_t says beside when it was sent; else empty
 };
+
+// What a description says: all that follows the type's hash and utime.
+constexpr size_t kDescriptionBegins = 16;
+
+std::string_view DescriptionIn(const MessageKind& kind, const LogEvent& event) {
+  const std::string_view data(reinterpret_cast<const char*>(event.data), static_cast<size_t>(event.size));
+  const bool is_one = kind.hash == run_description_t::getHash() && data.size() > kDescriptionBegins;
+  return is_one ? data.substr(kDescriptionBegins) : std::string_view();
+}
+
+// The session is the first of that.
+std::string_view SenderOf(std::string_view description) { return description.substr(0, sizeof(int64_t)); }
 
 // Sessions are drawn at random from 64 bits (bus/session.h), so two of different processes have at least this
 // many different bytes, but once in some 10 million pairs.
@@ -48,6 +62,12 @@ class Judge {
     if (!message) return;
     if (message->complete) complete_.insert(message->channel);
     if (place.vouched && message->session) senders_[message->channel].insert(*message->session);
+    if (message->complete && !message->description.empty()) {
+      Copies& copies =
+          descriptions_[{message->channel, SenderOf(message->description)}][message->description];
+      ++copies.all;
+      copies.vouched += place.vouched ? 1 : 0;
+    }
   }
 
   // Why the message is doubtful; empty: it is not.
@@ -61,16 +81,37 @@ class Judge {
       return "an event on " + channel + " that is not a whole " + message->kind->type;
     if (!place.vouched && message->session && IsNearlyKnown(message->channel, *message->session))
       return "an event on " + channel + " of a sender that no event with a checksum has";
+    if (!place.vouched && Differs(*message))
+      return "an event on " + channel + " that differs from the others of its sender";
     return {};
   }
 
  private:
+  // How often a sender said something.
+  struct Copies {
+    size_t vouched = 0;
+    size_t all = 0;
+  };
+
   std::optional<Message> Read(const KeptEvent& place) const {
     LogEvent event;
     ParseLogEvent(file_, place.begin, event);
     const MessageKind* kind = KindOfChannel(event.channel);
     if (kind == nullptr) return std::nullopt;
-    return Message{event.channel, kind, kind->decodes(event), kind->session(event)};
+    return Message{event.channel, kind, kind->decodes(event), kind->session(event),
+                   DescriptionIn(*kind, event)};
+  }
+
+  // Whether the sender of this description says something else with a checksum, or more often. A process
+  // sends the same again and again.
+  bool Differs(const Message& message) const {
+    const auto sender = descriptions_.find({message.channel, SenderOf(message.description)});
+    if (message.description.empty() || sender == descriptions_.end()) return false;
+    const auto own = sender->second.find(message.description);
+    if (own == sender->second.end() || own->second.vouched > 0) return false;
+    return std::any_of(sender->second.begin(), sender->second.end(), [&](const auto& other) {
+      return other.second.vouched > 0 || other.second.all > own->second.all;
+    });
   }
 
   bool IsNearlyKnown(std::string_view channel, int64_t session) const {
@@ -84,6 +125,8 @@ class Judge {
   const MappedFile& file_;
   std::set<std::string_view> complete_;  // channels
   std::map<std::string_view, std::set<int64_t>> senders_;
+  // By channel and sender, what it says of its run.
+  std::map<std::pair<std::string_view, std::string_view>, std::map<std::string_view, Copies>> descriptions_;
 };
 
 }  // namespace

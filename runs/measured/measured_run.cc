@@ -131,6 +131,7 @@ MeasuredRun ReadLogRun(const std::string& file, const std::optional<std::string>
                      "with a sidecar");
   }
   const run_description_t& description = log.messages.Of<run_description_t>().front();
+  RequireReadable(description, file);
   MeasuredRun run = RunOfExport(table, description.config_text, description.model_text);
   RequireEveryState(log, "fitting a model to it");
   if (!log.joint.empty()) run.name += "_" + log.joint;

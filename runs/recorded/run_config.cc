@@ -17,7 +17,13 @@ using settings::TomlNode;
 
 // A log is untrusted input, so its text goes through the only reader of TOML.
 TomlNode Parse(const std::string& text, const std::string& file, const std::string& what) {
-  return settings::ParseToml(text, file + ": run description: " + what);
+  try {
+    return settings::ParseToml(text, file + ": run description: " + what);
+  } catch (const InputError& error) {
+    throw InputError(std::string(error.what()) +
+                     "; the log's own description of its run (HYDRO_RUN) is damaged: hydro-log info, and "
+                     "export --channel HYDRO_STATE, do without it");
+  }
 }
 
 constexpr char kLimb[] = "hydro-limb";
@@ -73,8 +79,18 @@ std::string ModelName(const run_description_t& description, const std::string& f
   return name != nullptr && name->is(TomlNode::Kind::kString) ? name->text : std::string();
 }
 
+void RequireReadable(const run_description_t& description, const std::string& file) {
+  Parse(description.config_text, file, "configuration");
+  Parse(description.model_text, file, "model");
+}
+
 UnitSystem ModelUnits(const run_description_t& description, const std::string& file) {
-  return settings::ParseModelUnits(description.model_text, file + " (model)");
+  try {
+    return settings::ParseModelUnits(description.model_text, file + " (model)");
+  } catch (const InputError&) {
+    Parse(description.model_text, file, "model");  // says so where the text is damaged
+    throw;
+  }
 }
 
 // A limb numbers only the states that it sends, so those that it left out do not count as lost.

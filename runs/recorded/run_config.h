@@ -26,6 +26,9 @@ int CommandDelayTicks(const run_description_t& description, const std::string& f
 // The model's name; empty when its text has none.
 std::string ModelName(const run_description_t& description, const std::string& file);
 
+// Throws InputError unless the texts of configuration and model are TOML, which damaged ones are not.
+void RequireReadable(const run_description_t& description, const std::string& file);
+
 // The units of the run's model; the paper's where there is no model.
 UnitSystem ModelUnits(const run_description_t& description, const std::string& file);
 

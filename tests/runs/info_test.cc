@@ -95,6 +95,26 @@ TEST_F(InfoTest, ConfigurationOfTheRun) {
                   Entry("reference.steps", "[[0.2, 0.3], [2.2, -0.2]]"), Entry("time.mode", "'lockstep'")));
 }
 
+// Tests that a log whose description is damaged still tells what it holds, and that no unit is guessed.
+TEST_F(InfoTest, DamagedDescription) {
+  log::WriteRun(Path("log"), log::SampleRun(20), "", "[plant]\nrate_hz = 1000\n", "name \x1d \"Table 1\"\n");
+  const LogInfo info = Summarise(ReadRunLog(Path("log")), false);
+  EXPECT_EQ(info.ticks.states, 20);
+  EXPECT_EQ(Signal(info, "p1").min, 100);
+  EXPECT_EQ(Signal(info, "p1").unit, "");
+  EXPECT_EQ(Signal(info, "motor_speed").unit, "rad/s");
+  EXPECT_EQ(info.config.size(), 1u);
+  EXPECT_EQ(info.model_name, "");
+  EXPECT_THAT(info.description_fault, HasSubstr("run description: model:1: syntax: "));
+  EXPECT_THAT(InfoText(info), HasSubstr("run: not known: " + Path("log") + ": run description: model:1"));
+  EXPECT_THAT(InfoText(info), HasSubstr("\np1  "));
+  log::WriteRun(Path("log"), log::SampleRun(20), "", "[plant\nrate_hz = 1000\n");
+  const LogInfo config = Summarise(ReadRunLog(Path("log")), false);
+  EXPECT_EQ(config.model_name, "Table 1");
+  EXPECT_EQ(Signal(config, "p1").unit, "psi");
+  EXPECT_THAT(config.description_fault, HasSubstr("run description: configuration:1: syntax: "));
+}
+
 // Tests that a stop repeated against loss is reported once, and another sender's too.
 TEST_F(InfoTest, RepeatedStops) {
   RunLog log;

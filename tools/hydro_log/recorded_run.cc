@@ -43,6 +43,7 @@ RecordedRun::RecordedRun(const runs::RunLog& log, const std::string& role) {
     throw InputError(log.file +
                      ": its description has no configuration (an imported table); a replay needs the run's");
   }
+  runs::RequireReadable(description_, log.file);
   config_ = settings::ParseStackConfig(description_.config_text, log.file + " (its configuration)",
                                        description_.model_text, log.file + " (its model)");
   config_.time.mode =

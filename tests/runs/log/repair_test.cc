@@ -150,6 +150,55 @@ TEST_F(RepairTest, UndecodableMessages) {
   EXPECT_TRUE(result.lost.empty());
 }
 
+// Tests that a description with a flipped bit that no checksum covers is left out where its sender's others
+// tell otherwise, and that nothing is left out where they do not.
+TEST_F(RepairTest, DamagedDescription) {
+  WriteRun(Path("log"), SampleRun(20));
+  const std::vector<EventContents> run = ReadEvents(Path("log"));
+  const EventContents& good = run.front();
+  ASSERT_EQ(good.channel, "HYDRO_RUN");
+  EventContents damaged = good;
+  damaged.data[damaged.data.find("Table 1")] ^= 0x20;
+  EventContents later = good;
+  later.data[15] ^= 1;  // of utime, the second field after the type's hash
+  std::vector<EventContents> events = run;
+  events.front() = damaged;
+
+  // Three of one sender, of which two say the same.
+  events.insert(events.end(), {good, later});
+  WritePlain(Path("log"), events);
+  EXPECT_EQ(Repaired(ReadBytes(Path("log"))), Without(events, 0));
+  // Two, which contradict each other, and one alone.
+  events.pop_back();
+  WritePlain(Path("log"), events);
+  EXPECT_EQ(Repaired(ReadBytes(Path("log"))), events);
+  events.pop_back();
+  WritePlain(Path("log"), events);
+  EXPECT_EQ(Repaired(ReadBytes(Path("log"))), events);
+  // Flipped since they were written, like their check event; a checksum covers one other alone.
+  {
+    LogWriter writer(Path("log"), Opening::kTemporary);
+    for (const EventContents& event : {good, good, later}) {
+      if (event == later) writer.Flush();
+      writer.Append(event.channel, event.data.data(), event.data.size(), event.utime);
+    }
+    writer.Finish();
+  }
+  std::string bytes = ReadBytes(Path("log"));
+  std::vector<size_t> names, checks;
+  for (size_t at = bytes.find("Table 1"); at != std::string::npos; at = bytes.find("Table 1", at + 1))
+    names.push_back(at);
+  for (size_t at = bytes.find(kCheckChannel); at != std::string::npos; at = bytes.find(kCheckChannel, at + 1))
+    checks.push_back(at + kCheckChannel.size());
+  ASSERT_EQ(names.size(), 3u);
+  ASSERT_EQ(checks.size(), 3u);
+  for (const size_t at : {names[0], names[1], checks[1] + 20}) bytes[at] ^= 0x20;
+  RepairResult result;
+  EXPECT_EQ(Repaired(bytes, &result), std::vector<EventContents>{later});
+  ASSERT_EQ(result.lost.size(), 3u);  // the check event, too
+  EXPECT_EQ(result.lost.front().reason, "an event on HYDRO_RUN that differs from the others of its sender");
+}
+
 // Tests that a whole log loses nothing, and that one of no messages is whole as well.
 TEST_F(RepairTest, WholeLog) {
   WriteRun(Path("log"), SampleRun(20));

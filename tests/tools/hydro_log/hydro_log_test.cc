@@ -236,6 +236,32 @@ TEST_F(HydroLogTest, MissingIsNotSkipped) {
               HasSubstr("without state: 153, of which the plant skipped 3 and 150 are missing from the log"));
 }
 
+// Tests that of a log whose description is damaged, info and the messages can be had, and that the verbs that
+// need the description say so.
+TEST_F(HydroLogTest, DamagedDescription) {
+  log::WriteRun(Path("log"), log::SampleRun(20), "", "[plant]\nrate_hz = 1000\n", "name \x1d \"Table 1\"\n");
+  for (const std::vector<std::string>& verb : std::vector<std::vector<std::string>>{
+           {"summary", Path("log")}, {"replay", Path("log")}, {"export", Path("log"), "-o", "-"}}) {
+    const Outcome outcome = HydroLog(verb);
+    EXPECT_EQ(outcome.exit_code, 2) << verb[0];
+    EXPECT_THAT(outcome.err,
+                AllOf(HasSubstr("run description: model:1: syntax: "),
+                      HasSubstr("description of its run (HYDRO_RUN) is damaged: hydro-log info, and "
+                                "export --channel HYDRO_STATE, do without it\n")));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+  EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
+  const Outcome states = HydroLog({"export", Path("log"), "--channel", "HYDRO_STATE", "-o", "-"});
+  EXPECT_EQ(states.exit_code, 0);
+  EXPECT_THAT(states.err, HasSubstr("is damaged: "));
+  EXPECT_THAT(states.err, HasSubstr("; exported without units\n"));
+  EXPECT_EQ(std::count(states.out.begin(), states.out.end(), '\n'), 21);
+  const Outcome all = HydroLog({"export", Path("log"), "-o", Path("all.mcap")});
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_THAT(all.err, HasSubstr("; exported without the run's table and units\n"));
+  EXPECT_EQ(HydroLog({"export", Path("log"), "--channel", "HYDRO_STATE", "--si", "-o", "-"}).exit_code, 2);
+}
+
 // Tests that an undecodable message, which a foreign program may send, is no reason to refuse the log: info
 // counts it, and the other verbs mention it in one line; only verbs that promise the same bits refuse.
 TEST_F(HydroLogTest, UndecodableMessages) {
