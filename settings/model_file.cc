@@ -1,5 +1,6 @@
 #include "settings/model_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/file_kind.h"
@@ -91,6 +92,20 @@ model::EffectDescription SideDifference(const SideNames& names, double differenc
   return {.id = names.effect, .parameters = {{"difference", difference}}, .names = {}};
 }
 
+// Of ratios from its inverse to this, the difference is within the effect's bounds, which are symmetric.
+double LargestRatio(const model::ParameterInfo& difference) {
+  return std::round((1 + difference.max) / (1 - difference.max));
+}
+
+// The error of the effect would name its difference, which nobody wrote.
+void RequireRatio(const SectionReader& section, const SideNames& names, double first, double second) {
+  const model::ParameterInfo& bounds = model::FindEffect(names.effect)->parameters.front();
+  if (RangeOf(bounds).Holds((second - first) / (first + second))) return;
+  const std::string largest = ShortNumber(LargestRatio(bounds)), of = names.first;
+  throw section.Error(names.second, ShortNumber(second) + " beside " + of + " = " + ShortNumber(first),
+                      names.second + (" from " + of) + "/" + largest + " to " + largest + " " + of);
+}
+
 // Reads c_1 and c_2 in place of c, and so on. Returns false where the file has neither.
 bool ReadSides(SectionReader& section, const SideNames& names, const model::ParameterInfo& info,
                const UnitSystem& units, double* mean, std::vector<model::EffectDescription>* effects) {
@@ -107,7 +122,10 @@ bool ReadSides(SectionReader& section, const SideNames& names, const model::Para
         std::string(names.first) + " and " + names.second + ", or " + names.mean + ", not both");
   }
   *mean = (first + second) / 2;
-  if (first != second) effects->push_back(SideDifference(names, (second - first) / (first + second)));
+  if (first != second) {
+    effects->push_back(SideDifference(names, (second - first) / (first + second)));
+    if (has_first && has_second) RequireRatio(section, names, first, second);
+  }
   return true;
 }
 
@@ -123,8 +141,7 @@ void CheckEquations(const model::ModelDescription& description, const std::strin
 // With an area_ratio, c_2 over c_1, c is the mean of the two sides.
 void ReadAreaRatio(SectionReader& section, bool has_sides, std::vector<model::EffectDescription>* effects) {
   double ratio = 1;
-  const model::ParameterInfo& difference = model::FindEffect(kSides[0].effect)->parameters.front();
-  const double largest = std::round((1 + difference.max) / (1 - difference.max));
+  const double largest = LargestRatio(model::FindEffect(kSides[0].effect)->parameters.front());
   if (!section.Number("area_ratio", &ratio, {.min = 1 / largest, .max = largest})) return;
   if (has_sides)
     throw section.Error("area_ratio", "it beside c_1", "c_1 and c_2, or c and area_ratio, not both");
@@ -162,12 +179,33 @@ void CheckSides(const SectionReader& effects, const std::vector<model::EffectDes
   }
 }
 
+// The uncertainty of a mean from those of its two sides: the larger one, because an error that both share is
+// one of the mean. What one of them leaves out has the deviation of its kind. False where both are left out.
+bool ReadSideUncertainty(SectionReader& section, const SideNames& names, double of_its_kind, double* value) {
+  double first = of_its_kind, second = of_its_kind;
+  const bool has_first = section.Number(names.first, &first, kPositive);
+  const bool has_second = section.Number(names.second, &second, kPositive);
+  if (!has_first && !has_second) return false;
+  if (section.Has(names.mean)) {
+    const std::string sides = std::string(names.first) + " and " + names.second;
+    throw section.Error(names.mean, "it beside " + std::string(has_first ? names.first : names.second),
+                        sides + ", or " + names.mean + ", not both");
+  }
+  *value = std::max(first, second);
+  return true;
+}
+
 // [uncertainty]: relative standard deviations by base parameter.
 std::map<std::string, double> ReadUncertainty(SectionReader section) {
   std::map<std::string, double> uncertainty;
   double value = 0;
   for (const model::BaseParameter& parameter : model::BaseParameters()) {
-    if (section.Number(parameter.info.name, &value, kPositive)) uncertainty[parameter.info.name] = value;
+    const std::string& name = parameter.info.name;
+    for (const SideNames& sides : kSides) {
+      if (name == sides.mean && ReadSideUncertainty(section, sides, parameter.uncertainty, &value))
+        uncertainty[name] = value;
+    }
+    if (section.Number(name, &value, kPositive)) uncertainty[name] = value;
   }
   section.Finish();
   return uncertainty;

@@ -202,11 +202,14 @@ Table ReadCsv(const std::string& file, const CsvSettings& settings, const AskedC
   std::string_view bytes(reinterpret_cast<const char*>(contents.data()), contents.size());
   const std::optional<std::string> utf8 = FromUtf16(bytes, file);
   if (utf8.has_value()) bytes = *utf8;
+  const std::optional<std::string> lines = FromCarriageReturns(bytes);
+  if (lines.has_value()) bytes = *lines;
   const CsvLayout layout = FindLayout(bytes, file, settings, asked);
   CsvText text(bytes, file, layout);
   Table table;
   table.file = file;
   if (utf8.has_value()) table.Note("UTF-16");
+  if (lines.has_value()) table.Note("carriage returns as line ends");
   if (const std::string described = Described(layout); !described.empty()) table.Note(described);
   for (const std::string& name : text.names()) {
     if (table.not_utf8.empty()) table.not_utf8 = NotUtf8(name);

@@ -1,5 +1,6 @@
 #include "base/tables/text_encoding.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -81,6 +82,14 @@ std::optional<std::string> FromUtf16(std::string_view text, const std::string& f
     if (IsLowHalf(low)) at += 2;
   }
   return utf8;
+}
+
+std::optional<std::string> FromCarriageReturns(std::string_view text) {
+  if (text.find('\n') != std::string_view::npos || text.find('\r') == std::string_view::npos)
+    return std::nullopt;
+  std::string lines(text);
+  std::replace(lines.begin(), lines.end(), '\r', '\n');
+  return lines;
 }
 
 }  // namespace hydro::tables

@@ -65,6 +65,13 @@ TEST(ModelFileTest, RefusesContradictorySides) {
   EXPECT_THAT(error(c("c_1 = 3\nc_2 = -4\n")), HasSubstr("parameters.c_2: found -4"));
   EXPECT_THAT(error(c("c_1 = 3\nc_2 = 4\narea_ratio = 2\n")),
               HasSubstr("parameters.area_ratio: found it beside c_1"));
+  EXPECT_THAT(error(c("c_1 = 1e-12\nc_2 = 4\n")),
+              HasSubstr("parameters.c_2: found 4 beside c_1 = 1e-12, allowed c_2 from c_1/39 to 39 c_1"));
+  EXPECT_THAT(
+      error(Replaced(c("c = 4\n"), "V_ms = 3.16\n", "V_1 = 0.1\nV_2 = 16\n")),
+      AllOf(HasSubstr("m.toml:"), HasSubstr("parameters.V_2: found 16 beside V_1 = 0.1, allowed V_2 ")));
+  EXPECT_THAT(error(Replaced(c("c = 4\n"), "D = 0.00796\n", "D_1 = 1\nD_2 = 0.001\n")),
+              HasSubstr("parameters.D_2: found 0.001 beside D_1 = 1, allowed D_2 from D_1/"));
   EXPECT_THAT(error(c("c = 3\narea_ratio = 0\n")), HasSubstr("parameters.area_ratio: found 0"));
   EXPECT_THAT(error(c("c = 3\narea_ratio = 50\n")),
               AllOf(HasSubstr("parameters.area_ratio: found 50"), HasSubstr("39")));
@@ -138,6 +145,23 @@ TEST(ModelFileTest, Uncertainty) {
               HasSubstr("uncertainty.T_s: found 0"));
   EXPECT_THAT(InputErrorOf([&] { ParseModel(With("[uncertainty]\nT_x = 0.1\n"), "m.toml"); }),
               HasSubstr("T_x"));
+}
+
+// Tests that the uncertainty of unequal sides may be given by their names: the larger one is that of the
+// mean.
+TEST(ModelFileTest, UncertaintyOfSides) {
+  const auto uncertainty = [](const std::string& keys) {
+    return ParseModel(With("[uncertainty]\n" + keys), "m.toml").uncertainty;
+  };
+  using Map = std::map<std::string, double>;
+  EXPECT_EQ(uncertainty("c_1 = 0.02\nc_2 = 0.05\nV_1 = 0.3\nV_2 = 0.1\nD_1 = 0.2\nD_2 = 0.2\n"),
+            (Map{{"c", 0.05}, {"V_ms", 0.3}, {"D", 0.2}}));
+  // The other side is known to the 1 % of its kind.
+  EXPECT_EQ(uncertainty("c_1 = 0.02\n"), (Map{{"c", 0.02}}));
+  EXPECT_EQ(uncertainty("c_2 = 0.001\n"), (Map{{"c", 0.01}}));
+  EXPECT_THAT(InputErrorOf([&] { uncertainty("c = 0.1\nc_2 = 0.2\n"); }),
+              HasSubstr("uncertainty.c: found it beside c_2, allowed c_1 and c_2, or c, not both"));
+  EXPECT_THAT(InputErrorOf([&] { uncertainty("D_1 = 0\n"); }), HasSubstr("uncertainty.D_1: found 0"));
 }
 
 constexpr char kCurve[] =

@@ -109,6 +109,17 @@ TEST_F(TableTest, CommentsAndBlankLines) {
 // Tests that a last line without an end is a row.
 TEST_F(TableTest, NoNewlineAtTheEnd) { EXPECT_EQ(Csv("a,b\n1,2\n3,4").rows(), 2u); }
 
+// Tests that carriage returns alone end lines, too, where they end all of them, and that the table says so.
+TEST_F(TableTest, CarriageReturnsAlone) {
+  const Table table = Csv("a,b\r1,2\r3,4\r");
+  Table expected;
+  expected.columns = {{"a", {1, 3}}, {"b", {2, 4}}};
+  ExpectSame(table, expected);
+  EXPECT_EQ(table.Place(1, "b"), Path("x.csv") + ": line 3, column b");
+  EXPECT_THAT(table.layout, HasSubstr("carriage returns as line ends"));
+  EXPECT_THAT(log::InputErrorOf([&] { Csv("a,b\r1,2\n3,4\n"); }), HasSubstr(": "));
+}
+
 // Tests that each kind of malformed CSV is an error that names the place.
 TEST_F(TableTest, MalformedCsv) {
   const struct {
