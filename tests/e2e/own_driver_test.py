@@ -111,13 +111,17 @@ class OwnDriverTest(OwnDriverCase):
             with self.subTest(example):
                 log_file = self.path(example + ".lcmlog")
                 launch = self.launch(self.config(example), "--set", "limits.stale_input_s=0.3", "--log", log_file)
-                self.assertEqual(launch.wait(60), 0, launch.report())
+                code = launch.wait(60)
+                skipped = re.search(r"\d+ of \d+ ticks \(.*\) were skipped", launch.stderr)
+                if skipped and code != 0 and "device_silent" in launch.stderr:
+                    # A terminal's bytes wait for the kernel, whatever the priority of who reads them.
+                    self.skipTest(f"this computer is too busy for a device: {skipped[0]}")
+                self.assertEqual(code, 0, launch.report())
                 self.assertRegex(launch.stderr + launch.stdout, "stands for the device.*nothing real moves")
                 log = event_log.Log(log_file)
                 self.run_program("hydro-log", "summary", log_file, "--json", self.path("summary.json"), "--force")
                 with open(self.path("summary.json"), encoding="utf-8") as file:
                     tracking = json.load(file)["tracking"]
-                skipped = re.search(r"\d+ of \d+ ticks \(.*\) were skipped", launch.stderr)
                 if skipped and not tracking["at_target"]:
                     self.skipTest(f"this computer is too busy for a loop: {skipped[0]}")
                 self.assertTrue(tracking["at_target"], tracking)

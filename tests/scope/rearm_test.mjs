@@ -52,7 +52,12 @@ test('re-arm says what it will do, and does it', async () => {
   assert.ok(Math.abs(distance) > 0.01, `the arm was far from its reference: ${way}`);
   assert.equal(await page.locator('.events [data-kind=rearm]').count(), 0);
   await dialog.getByRole('button', { name: 'Re-arm: the arm may move' }).click();
-  await page.getByText(/^Re-armed: ended .*motor_speed_limit/).waitFor();
+  await page
+    .getByText(/^Re-armed: ended .*motor_speed_limit/)
+    .waitFor()
+    .catch(async (error) => {
+      throw new Error(`${error.message}\nthe page says: ${await page.locator('body').innerText()}`);
+    });
   await page.locator('.events [data-kind=rearm]').first().waitFor();
   // And so it does: after the two seconds, and the time that the loops take.
   await until(
