@@ -10,6 +10,7 @@
 #include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "diagnose/evidence/clocks.h"
+#include "diagnose/fit/prior.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/proof_windows.h"
 #include "diagnose/prove/propose.h"
@@ -20,6 +21,7 @@
 #include "diagnose/say/conclusion.h"
 #include "diagnose/say/per_run.h"
 #include "diagnose/say/sentence.h"
+#include "model/effects/catalogue.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -113,9 +115,14 @@ std::vector<Change> Variants(const model::EffectInfo& info, const std::vector<co
   return variants;
 }
 
-bool HaveOil(const std::vector<const RunData*>& runs) {
-  return IsMeasured("p1", runs) || IsMeasured("p2", runs) ||
-         std::any_of(runs.begin(), runs.end(), [](const RunData* run) { return !run->stimulus.bypass; });
+// Whether the model has an effect beside which this one cannot stand: a second accumulator.
+bool IsExcluded(const Change& change, const model::ModelDescription& given) {
+  model::EffectDescription effect{.id = change.effect, .parameters = {}, .names = change.names};
+  for (const model::ParameterInfo& parameter : model::FindEffect(change.effect)->parameters)
+    if (parameter.is_number()) effect.parameters[parameter.name] = parameter.example;
+  return std::any_of(given.effects.begin(), given.effects.end(), [&](const model::EffectDescription& own) {
+    return model::ExcludeEachOther(effect, own);
+  });
 }
 
 // The effects that may be named, each with every name that it can take in these runs.
@@ -136,31 +143,22 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
         std::any_of(given.effects.begin(), given.effects.end(),
                     [&](const model::EffectDescription& effect) { return effect.id == info.id; });
     if (has) continue;
-    const std::vector<Change> variants = Variants(info, runs);
+    std::vector<Change> variants = Variants(info, runs);
+    std::erase_if(variants, [&](const Change& change) { return IsExcluded(change, given); });
     changes.insert(changes.end(), variants.begin(), variants.end());
   }
   return changes;
 }
 
-bool AreDriven(const std::vector<const RunData*>& runs) {
-  return std::any_of(runs.begin(), runs.end(), [](const RunData* run) {
-    const std::vector<double>& command = run->stimulus.voltage;
-    return std::any_of(command.begin(), command.end(), [](double v) { return v != 0; });
-  });
-}
-
-// The base values that may be refitted: not what all torques are measured by, which no run shows. That is k_1
-// in a bare motor, and the inertia where nothing is ever commanded.
+// The base values that may be refitted: not what all torques are measured by, which no run shows.
 std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std::vector<std::string>& names,
                                 const std::vector<const RunData*>& runs) {
-  const bool oil = HaveOil(runs), driven = AreDriven(runs);
   std::vector<size_t> allowed;
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
     const model::BaseParameter& base = model::BaseParameters()[i];
     const bool asked = std::find(names.begin(), names.end(), base.info.name) != names.end();
-    const bool measures = (base.member == &model::Parameters::k_1 && !(oil && driven)) ||
-                          (base.member == &model::Parameters::J && !driven);
-    const bool otherwise = !measures && (given.parameters.*base.member != 0 || !IsTermOfAnEffect(base));
+    const bool otherwise =
+        !IsYardstick(base.member, runs) && (given.parameters.*base.member != 0 || !IsTermOfAnEffect(base));
     if (names.empty() ? otherwise : asked) allowed.push_back(i);
   }
   return allowed;
@@ -244,6 +242,8 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
       Prepare(model, options.jobs, std::move(runs), std::move(held_out), std::move(checked.aligned));
   const std::vector<size_t> allowed = AllowedBase(model, options.free, PointersTo(prepared.fitted));
   ProofContext context = MakeContext(model, prepared, allowed, options, report_progress);
+  RequireMotion(context.runs, "fitted");
+  RequireMotion(context.held_out, "held-out");
   context.time_is_up = [&limit] { return limit.IsUp(); };
 
   Hypothesis as_given;

@@ -242,6 +242,9 @@ Diagnosis MendFirst(const model::ModelDescription& model, const CheckedRecording
 void AddChecked(const CheckedRecordings& checked, Diagnosis* diagnosis) {
   const std::vector<std::string> remarks = RemarksOn(checked);
   diagnosis->remarks.insert(diagnosis->remarks.begin(), remarks.begin(), remarks.end());
+  if (checked.mistakes.empty() && IsOpen(diagnosis->verdict) && !checked.commands.late.empty())
+    diagnosis->sentence =
+        "Mend the recording first: " + checked.commands.late.front() + ". " + diagnosis->sentence;
   if (checked.mistakes.empty()) return;
   diagnosis->sentence = MendFirstSentence(checked) + " " + diagnosis->sentence;
   const bool named = std::any_of(diagnosis->effects.begin(), diagnosis->effects.end(),

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "diagnose/balances/column_maker.h"
+#include "diagnose/fit/prior.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
@@ -16,9 +17,6 @@ using model::Parameters;
 constexpr double kFromNothing = 0.1;
 // For "one value differs by run": this many times the deviation that each run may have in every hypothesis.
 constexpr double kDiffersByRun = 6;
-
-// Relative uncertainty of the numbers of effects that the model states; for their phases, in rad.
-constexpr double kEffectKnown = 0.3, kPhaseKnown = 0.1;
 
 // One term of each balance keeps its value, and all others are measured by it. If every scale were free, the
 // smallest balance would be the best.
@@ -49,7 +47,7 @@ void AddLimit(ColumnMaker* maker, int column, double Parameters::*member) {
   });
 }
 
-// Numbers of the model's own effects: they are estimates, as friction and leakage are.
+// Numbers of the model's own effects.
 void AddGivenEffects(ColumnMaker* maker) {
   const model::ModelDescription& given = maker->setup->given;
   const std::vector<model::EffectParameter> all = model::EffectParameters(given);
@@ -61,8 +59,10 @@ void AddGivenEffects(ColumnMaker* maker) {
     const double value = all[i].In(&copy);
     const bool phase = role == model::Role::kPhase;
     if (role == model::Role::kPeriods || (value == 0 && !phase)) continue;
-    const int column = maker->Add({id + "." + all[i].Label(), "", phase ? kPhaseKnown : kEffectKnown, false},
-                                  {.kind = ColumnMeaning::Kind::kGiven, .base = i});
+    const double deviation = DeviationOf(given, all[i]);
+    const int column =
+        maker->Add({id + "." + all[i].Label(), "", phase ? deviation : deviation / std::abs(value), false},
+                   {.kind = ColumnMeaning::Kind::kGiven, .base = i});
     maker->works.back().push_back([maker, column, i, value, phase](size_t run) {
       const std::vector<BalanceSeries> found =
           DerivativesOf(maker->setup->given, maker->Motion(run), {{model::Unknown::Kind::kEffect, i}});

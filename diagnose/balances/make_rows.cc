@@ -193,6 +193,8 @@ std::vector<std::pair<std::string, std::string>> TakeOutDoubles(bool one_way, Ro
     std::vector<std::string> values;
     for (const int column : columns) {
       const auto base = std::find_if(rows->base.begin(), rows->base.end(), [&](int one) {
+        // The torque limit acts in the few rows at the limit, and stands for no other effect.
+        if (rows->columns[static_cast<size_t>(one)].name == "T_pmax") return false;
         return IsDouble(*rows, column, one, one_way ? kSameOneWay : kSame);
       });
       if (base == rows->base.end()) break;

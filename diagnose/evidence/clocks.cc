@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/maths/spread.h"
 #include "base/parallel.h"
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/recording/run_data.h"
@@ -18,8 +19,14 @@ namespace {
 using Run = runs::MeasuredRun;
 using Signal = runs::MeasuredSignal Run::*;
 
+// Pressures that hardly leave their noise are no clock to hold the others against.
+bool Changes(const runs::MeasuredSignal& signal) {
+  const double noise = signal.noise.value_or(EstimateNoise(signal.values));
+  return maths::RangeOf(signal.values).size() > 4 * kHardlyMoves * noise;
+}
+
 bool CanBeAligned(const Run& run) {
-  return !run.bypass && run.p1.measured() && run.p2.measured() &&
+  return !run.bypass && run.p1.measured() && run.p2.measured() && Changes(run.p1) && Changes(run.p2) &&
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 2 * kFewestSamples &&
          run.time.back() - run.time.front() >= kClockTile &&
          MedianInterval(run.time) <= runs::kSlowestSamples;

@@ -26,7 +26,8 @@ std::vector<runs::SignalDelay> OfSignals(const Delays& delays);
 double LargestDelay(const runs::MeasuredRun& run);
 
 struct LateSignals {
-  double score = 0;                  // log evidence of the rows up to 2 Hz, with the odds of a late signal
+  double evidence = 0;               // log evidence of the rows up to 2 Hz
+  double score = 0;                  // the same, tempered, with the odds of each late signal
   std::vector<double> delay, error;  // s, in the order of what may be late; standard errors
 };
 

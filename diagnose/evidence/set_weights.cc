@@ -22,8 +22,6 @@ constexpr int kDraws = 400;
 // Most wrong answers are the truth plus a further change that slightly corrects the truth's form. Each change
 // beyond the first must be worth this share of what there is to explain.
 constexpr double kPriceOfAChange = 0.05;
-// Additions worth less than this share of the whole gain were true in 2 of 15 cases.
-constexpr double kLeastShareOfGain = 0.1;
 // Large enough to include the truth.
 constexpr size_t kFinalists = 25, kSubsetsOf = 3, kBestValues = 2;
 
@@ -119,10 +117,9 @@ bool AddsTo(const ChangeSet& more, const ChangeSet& less) {
   return more.size() > less.size() && std::includes(more.begin(), more.end(), less.begin(), less.end());
 }
 
-// Adds the share of each set that gains next to nothing over a smaller set to the share of that smaller one,
-// starting with the largest sets.
+// Adds the share of each set that scores less than a smaller one to the share of that smaller one, starting
+// with the largest sets: only what gains something is a further change.
 void DropAdditions(const std::vector<ScoredSet>& finalists, VectorXd* shares) {
-  const double least = kLeastShareOfGain * (finalists.front().score - ScoreOfNothing(finalists));
   std::vector<size_t> order(finalists.size());
   std::vector<ChangeSet> changes;
   for (size_t k = 0; k < order.size(); ++k) {
@@ -134,7 +131,7 @@ void DropAdditions(const std::vector<ScoredSet>& finalists, VectorXd* shares) {
   for (const size_t k : order)
     for (size_t j = 0; j < finalists.size(); ++j) {  // the best first
       if (!AddsTo(changes[k], changes[j])) continue;
-      if (finalists[k].score - finalists[j].score < least) {
+      if (finalists[k].score < finalists[j].score) {
         (*shares)[static_cast<Index>(j)] += (*shares)[static_cast<Index>(k)];
         (*shares)[static_cast<Index>(k)] = 0;
       }

@@ -9,8 +9,9 @@
 
 namespace hydro::diagnose {
 
-// Such machines have fewer poles, teeth, pistons and vanes than this.
-inline constexpr int kMostPeriods = 48;
+// Such machines have fewer poles, teeth, pistons and vanes than this: the rotor of a stepping motor has 50
+// teeth.
+inline constexpr int kMostPeriods = 52;
 
 // The fewest periods per turn that the runs can show. At least one run has to cover a repetition, because
 // part of a sine could be any smooth load over the angle. Returns more than kMostPeriods when the runs show

@@ -23,8 +23,9 @@ using Eigen::MatrixXd;
 // the numbers found were off by up to two percent without any sign of it in the runs (bench/gap_score).
 constexpr double kIdealised = 0.005;
 
-// The same for each of the model's own numbers that are held. An effect that was found stands beside their
-// terms, so a small effect shifts by this fraction of a large term. Calibrated on the same rigs.
+// The same for each of the model's own numbers that are held, unless all torques are measured by it: it is
+// then off by as much as it is known. An effect that was found stands beside their terms, so a small effect
+// shifts by this fraction of a large term. Calibrated on the same rigs.
 constexpr double kIdealisedHeld = 0.0003;
 
 // Standard deviation of a time, in sample intervals, for reactions that the model takes to be immediate and
@@ -187,7 +188,12 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
     const bool is_free = std::any_of(free.begin(), free.end(),
                                      [&](const FreeParameter& one) { return one.name == numbers[i].name; });
     (is_free ? own : held).push_back(static_cast<Index>(i));
-    if (!is_free) off.push_back(kIdealisedHeld * numbers[i].value / numbers[i].Slope());
+    if (is_free) continue;
+    const bool measures = numbers[i].unknown.kind == model::Unknown::Kind::kBase &&
+                          IsYardstick(model::BaseParameters()[numbers[i].unknown.index].member, runs);
+    const double relative =
+        measures ? model::UncertaintyOf(fitted.hypothesis.model, numbers[i].unknown.index) : kIdealisedHeld;
+    off.push_back(relative * numbers[i].value / numbers[i].Slope());
   }
   const MatrixXd information = InformationOf(all, discrepancy, KnownVariances(all.hypothesis));
   const MatrixXd covariance = CovarianceOf(information(own, own));

@@ -6,6 +6,7 @@
 
 #include "diagnose/fit/hypothesis.h"
 #include "diagnose/fit/intervals.h"
+#include "model/response.h"
 
 namespace hydro::diagnose {
 
@@ -25,24 +26,57 @@ double VagueDeviation(const model::Parameters& given, const std::string& name) {
   return given.T_pmax;
 }
 
+// A free number's given value and standard deviation, as fitted; a deviation of 0 where nothing is known.
+struct Beforehand {
+  double value = 0, deviation = 0;
+};
+
+Beforehand KnownBase(const model::ModelDescription& given, const FreeParameter& parameter) {
+  const double value = given.parameters.*model::BaseParameters()[parameter.unknown.index].member;
+  const double relative = model::UncertaintyOf(given, parameter.unknown.index);
+  if (value == 0) return {value, VagueDeviation(given.parameters, parameter.name)};
+  return {value, parameter.logarithmic ? relative : relative * std::abs(value)};
+}
+
+Beforehand KnownNumber(const model::ModelDescription& given, const Hypothesis& hypothesis,
+                       const FreeParameter& parameter) {
+  const model::EffectParameter number = model::EffectParameters(hypothesis.model)[parameter.unknown.index];
+  // Effects that were added come after those that the model has.
+  if (number.effect >= given.effects.size() || !number.IsStated(given)) return {};
+  model::ModelDescription copy = given;
+  const double value = number.In(&copy), deviation = DeviationOf(given, number);
+  return {value, parameter.logarithmic && value > 0 ? deviation / value : deviation};
+}
+
 }  // namespace
 
-double CostOfLying(double deviations) { return std::log1p(deviations * deviations); }
-
-double OddsLostBy(const model::Parameters& values, const model::ModelDescription& given) {
-  constexpr double kExpected = 2;    // standard deviations: 19 of 20 values lie closer
-  constexpr double kNothing = 0.01;  // of a value: less counts as none
-  double lost = 0;
-  for (size_t base = 0; base < model::BaseParameters().size(); ++base) {
-    const auto member = model::BaseParameters()[base].member;
-    const double deviation = model::UncertaintyOf(given, base);
-    if (given.parameters.*member == 0 || !(deviation > 0)) continue;
-    const double ratio = std::max(kNothing, values.*member / (given.parameters.*member));
-    const double away = std::abs(std::log(ratio)) / deviation;
-    if (away > kExpected) lost += CostOfLying(away) - CostOfLying(kExpected);
+double DeviationOf(const model::ModelDescription& given, const model::EffectParameter& number) {
+  constexpr double kEstimated = 0.3, kPhase = 0.1;
+  const model::EffectDescription& effect = given.effects[number.effect];
+  const std::vector<model::ParameterInfo>& infos = model::FindEffect(effect)->parameters;
+  const auto info = std::ranges::find(infos, number.name, &model::ParameterInfo::name);
+  if (info->role == model::Role::kPeriods) return 0;
+  if (info->role == model::Role::kPhase) return kPhase;
+  model::ModelDescription copy = given;
+  const double value = number.In(&copy);
+  for (size_t base = 0; info->sides != nullptr && base < model::BaseParameters().size(); ++base) {
+    const bool of = model::BaseParameters()[base].member == info->sides;
+    // Half of the difference of two sides that are each known so well, relative to their mean.
+    if (of) return model::UncertaintyOf(given, base) * (1 - value * value) / std::sqrt(2.0);
   }
-  return lost;
+  return kEstimated * std::abs(value);
 }
+
+bool IsYardstick(double model::Parameters::*member, const std::vector<const RunData*>& runs) {
+  if (member != &model::Parameters::k_1 && member != &model::Parameters::J) return false;
+  const bool driven = std::ranges::any_of(runs, [](const RunData* run) {
+    return std::ranges::any_of(run->stimulus.voltage, [](double v) { return v != 0; });
+  });
+  if (member == &model::Parameters::J) return !driven;
+  return !driven || !HaveOil(runs);
+}
+
+double CostOfLying(double deviations) { return std::log1p(deviations * deviations); }
 
 Prior KnownBefore(const Hypothesis& hypothesis) {
   Prior prior;
@@ -50,17 +84,13 @@ Prior KnownBefore(const Hypothesis& hypothesis) {
     prior.centre.push_back(parameter.ToFitted(parameter.value));
     prior.weight.push_back(0);
     const Knowledge* known = hypothesis.known.get();
-    if (known == nullptr || parameter.unknown.kind != model::Unknown::Kind::kBase) continue;
-    const size_t base = parameter.unknown.index;
-    const double given = known->given.parameters.*model::BaseParameters()[base].member;
-    if (parameter.logarithmic && given <= 0) continue;
-    const double relative = model::UncertaintyOf(known->given, base);
-    const double deviation = given == 0              ? VagueDeviation(known->given.parameters, parameter.name)
-                             : parameter.logarithmic ? relative
-                                                     : relative * std::abs(given);
-    if (!(deviation > 0)) continue;
-    prior.centre.back() = parameter.ToFitted(given);
-    prior.weight.back() = known->weight / (deviation * deviation);
+    if (known == nullptr) continue;
+    const Beforehand before = parameter.unknown.kind == model::Unknown::Kind::kBase
+                                  ? KnownBase(known->given, parameter)
+                                  : KnownNumber(known->given, hypothesis, parameter);
+    if ((parameter.logarithmic && before.value <= 0) || !(before.deviation > 0)) continue;
+    prior.centre.back() = parameter.ToFitted(before.value);
+    prior.weight.back() = known->weight / (before.deviation * before.deviation);
   }
   return prior;
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "diagnose/recording/run_data.h"
 #include "model/terms/description.h"
 #include "model/terms/parameter_info.h"
 
@@ -39,13 +40,18 @@ struct MeasuredValues {
 // Cauchy's distribution: a data sheet that says 5 % is sometimes wrong altogether.
 double CostOfLying(double deviations);
 
-// The logarithm of the odds that base values lose by lying more than two standard deviations from their given
-// values, summed over the values. It follows CostOfLying(). For smaller deviations only the balances count
-// the distance; otherwise the same knowledge would count twice. Values given as 0 lose nothing.
-double OddsLostBy(const model::Parameters& values, const model::ModelDescription& given);
+// How well a model knows a number of an effect that it states, as the number's standard deviation. The two
+// sides of a cylinder or a pump are known as their mean is, a phase to a tenth of a radian; all else is an
+// estimate, as friction and leakage are. 0: a count, or a number that is stated as 0.
+double DeviationOf(const model::ModelDescription& given, const model::EffectParameter& number);
+
+// Whether these runs measure all torques by this value, so that they do not show it: k_1 in a bare motor, the
+// inertia where nothing is ever commanded.
+bool IsYardstick(double model::Parameters::*member, const std::vector<const RunData*>& runs);
 
 // The prior for the hypothesis' free numbers. All weights are 0 where the hypothesis has no knowledge. For a
-// base parameter that is given as 0, only the order of magnitude is known.
+// base parameter that is given as 0, only the order of magnitude is known. Numbers of an effect that was
+// found are not known at all.
 Prior KnownBefore(const Hypothesis& hypothesis);
 
 // The same for a fit to windows, with what the balances measured. They saw all of the runs, a fit sees few

@@ -153,8 +153,7 @@ size_t Chooser::WithWhatBalancesSay(size_t place) const {
     if (more.size() != 1 || sets_[i].Effects().size() != sets_[place].Effects().size() + 1) continue;
     const double said = sets_.SaidOf(more.front());
     const GapFall fall = FallOf(sets_[place].near, sets_[i].near);
-    const double values = sets_[i].price_of_values - sets_[place].price_of_values;
-    const bool paid = fall.logarithm >= sets_.PriceOf(more.front()) + values;
+    const bool paid = fall.logarithm >= sets_.PriceOf(more.front());
     if (said <= most || !paid || fall.logarithm < -std::max(kEqual, fall.error)) continue;
     most = said;
     with = i;

@@ -97,7 +97,6 @@ ProofWindows ProofWindowsOf(const ProofContext& context) {
   std::vector<const RunData*> runs = context.runs;
   runs.insert(runs.end(), context.held_out.begin(), context.held_out.end());
   ProofWindows proof;
-  proof.given = context.given;
   proof.near.seconds = NearHorizon(runs);
   proof.far.seconds = kFarTimes * proof.near.seconds;
 

@@ -21,7 +21,6 @@ struct JudgingWindows {
 };
 
 struct ProofWindows {
-  model::ModelDescription given;  // with how well its values are known
   // Owns all windows below.
   std::shared_ptr<const std::vector<RunData>> all;
   std::vector<const RunData*> told;    // of the fitted runs, for intervals: more than a fit can afford

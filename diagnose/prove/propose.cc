@@ -56,9 +56,10 @@ std::vector<model::ModelDescription> ModelsOfRuns(const ProofContext& context,
   return models;
 }
 
-// The sets that may be proposed, in this order: the empty set, the likeliest named explanations, the best
-// named set by score, the likeliest explanation of all if it has a curve, the sets with one change less than
-// the first explanation, and each single change at its best shape.
+// The sets that may be proposed, in this order: the empty set, the likeliest named explanation, the best
+// single change of each kind, further explanations, the best named set by score, the likeliest explanation of
+// all if it has a curve, the sets with one change less than the first explanation, and each single change at
+// its best shape.
 std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& named, const ExplanationWeights& weights,
                                      const std::vector<ScoredSet>& scores) {
   std::vector<ChangeSet> sets = {{}};
@@ -74,15 +75,19 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& named, const Expl
     if (best != scores.end()) add(best->set);
   };
   const auto is_single = [](const ScoredSet& one) { return one.set.size() == 1; };
-  for (size_t i = 0; i < std::min(kMostExplanations, named.explanations.size()); ++i) {
-    add(named.explanations[i].set);
-    // Two effects that no simulation bears out may explain more together than the one that is there.
-    if (i == 0) {
-      add_best([&](const ScoredSet& one) {
-        return is_single(one) && IsMissingTerm(one.set[0]) && !HasCurve(one.set);
-      });
-    }
-  }
+  const auto explain = [&](size_t from, size_t to) {
+    for (size_t i = from; i < std::min(to, named.explanations.size()); ++i) add(named.explanations[i].set);
+  };
+  explain(0, 1);
+  // One of each kind is simulated, whatever the balances make of them together: the best effect, since two
+  // that no simulation bears out may explain more than the one that is there; the best curve, or the nearest
+  // effect would take its place; and the best value, since wrong values are the likeliest cause of all.
+  add_best([&](const ScoredSet& one) {
+    return is_single(one) && IsMissingTerm(one.set[0]) && !HasCurve(one.set);
+  });
+  add_best([&](const ScoredSet& one) { return is_single(one) && HasCurve(one.set); });
+  add_best([&](const ScoredSet& one) { return is_single(one) && one.set[0].starts_with("value."); });
+  explain(1, kMostExplanations);
   add_best([](const ScoredSet& one) { return !HasCurve(one.set); });
   if (!weights.explanations.empty() && HasCurve(weights.explanations.front().set))
     add(weights.explanations.front().set);
@@ -94,10 +99,6 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& named, const Expl
       add(less);
     }
   }
-  // Wrong values are the likeliest cause of all: the best set of values is tried by itself.
-  add_best([&](const ScoredSet& one) { return is_single(one) && one.set[0].starts_with("value."); });
-  // The best curve without a known effect is also tried. Without it, the nearest effect would take its place.
-  add_best([&](const ScoredSet& one) { return is_single(one) && HasCurve(one.set); });
   std::vector<std::string> alone;
   for (const ScoredSet& scored : scores) {
     if (!is_single(scored) || !IsMissingTerm(scored.set[0])) continue;

@@ -96,8 +96,6 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
   if (chooser.LeavesAGap(best)) {
     context.Report("what balances cannot show", 0.91);
     chooser.Race(best, blind);
-    // An effect that substitutes for one of them may be in its way.
-    if (!sets[best].Effects().empty()) chooser.Race(chooser.BestValues(), blind);
     best = chooser.Choice();
   }
   best = chooser.OneNumberForManyValues(best);

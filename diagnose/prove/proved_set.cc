@@ -12,11 +12,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr double kEven = 0.05, kWorthIt = 9;  // a twentieth of the gap, and the odds that it is worth
-
-// The fall of the gap's logarithm that odds of this logarithm are worth.
-double FallWorth(double odds) { return kEven * odds / std::log(kWorthIt); }
-
 double MedianLogarithm(const std::vector<WindowGap>& gaps) {
   std::vector<double> logarithms;
   for (const WindowGap& gap : gaps) {
@@ -67,7 +62,6 @@ bool ProvedSet::HasCurve() const {
 }
 
 void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set) {
-  set->price_of_values = FallWorth(OddsLostBy(set->hypothesis.model.parameters, windows.given));
   const auto model = [set](size_t run) -> const model::ModelDescription& { return set->ModelOf(run); };
   set->near = GapsOfWindows(model, windows.near, jobs);
   set->far.clear();
@@ -88,15 +82,13 @@ bool PredictsBetter(const ProofWindows& windows, int jobs, ProvedSet* other, Pro
 bool PredictsBetter(const ProvedSet& other, const ProvedSet& set) {
   if (!other.tested()) return false;
   if (!set.tested()) return true;
-  const GapFall far = FallOf(set.far, other.far);
-  GapFall near = FallOf(set.near, other.near);
-  near.logarithm -= other.price_of_values - set.price_of_values;
+  const GapFall far = FallOf(set.far, other.far), near = FallOf(set.near, other.near);
   return near.Exceeds(0) && far.logarithm >= -far.error;
 }
 
 GapFall WorthOf(const ProvedSet& from, const ProvedSet& to) {
   GapFall worth = FallOf(from.near, to.near);
-  worth.logarithm -= to.price - from.price + to.price_of_values - from.price_of_values;
+  worth.logarithm -= to.price - from.price;
   return worth;
 }
 
@@ -106,15 +98,15 @@ double PriceOf(double weight) {
   return kEven - FallWorth(std::log(odds));
 }
 
+double FallWorth(double log_odds) { return kEven * log_odds / std::log(kWorthIt); }
+
 double LogOddsOf(double fall) { return fall / kEven * std::log(kWorthIt); }
 
 bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price) {
   if (!with.tested() || !without.tested()) return true;
   const GapFall near = FallOf(without.near, with.near);
   if (near.windows == 0) return true;
-  const double values = with.price_of_values - without.price_of_values;
-  return near.logarithm - near.error >= price + values &&
-         !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
+  return near.logarithm - near.error >= price && !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
 }
 
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given) {

@@ -21,7 +21,6 @@ struct ProvedSet {
   std::vector<WindowGap> far;   // empty until a comparison needs them
   double weight = 0;            // of the proposal; 0 if it was not proposed
   double price = 0;             // the sum over its effects (PriceOf())
-  double price_of_values = 0;   // for the distance of its base values from those given, in the same measure
   bool refined = false;         // refined as far as comparison of sets needs
   std::optional<size_t> begun;  // the place of the set whose values it was last tried with
 
@@ -55,6 +54,8 @@ bool PredictsBetter(const ProofWindows& windows, int jobs, ProvedSet* other, Pro
 double PriceOf(double weight);
 // The inverse of that exchange: the log odds that a fall of this logarithm is worth.
 double LogOddsOf(double fall);
+// The inverse: the fall of the logarithm of a gap that is worth these odds.
+double FallWorth(double log_odds);
 
 // The fall of the near windows' gap from one set to another, less the rise of the prices of effects and
 // values.
@@ -67,6 +68,8 @@ inline constexpr double kPartOfAnEffect = 0.1;
 inline constexpr double kPartOfValues = 0.05;
 // Sets whose gaps differ by less predict equally well: a tenth of what an effect has to gain.
 inline constexpr double kEqual = 0.01;
+// The odds of nine to one are worth this part of the gap.
+inline constexpr double kEven = 0.05, kWorthIt = 9;
 
 // Whether `with` is worth the price of the one effect that it has more than `without` over the near windows,
 // and does not make the far windows, if they were predicted, worse by kPartOfAnEffect. True where either set

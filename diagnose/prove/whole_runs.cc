@@ -137,9 +137,11 @@ bool SameEffects(const ProvedSet& a, const ProvedSet& b) {
   return std::is_permutation(of_a.begin(), of_a.end(), of_b.begin(), of_b.end());
 }
 
-bool TakesMost(double from, double to) { return to - 1 < (1 - kMost) * (from - 1); }
-
 }  // namespace
+
+bool TakesMost(const ProvedSet& given, const ProvedSet& set) {
+  return MeanSquare(set.near) - 1 < (1 - kMost) * (MeanSquare(given.near) - 1);
+}
 
 std::vector<WindowGap> OverRuns(const ProofContext& context, const ProvedSet& set) {
   const std::vector<const RunData*>& runs = context.predicted();
@@ -185,9 +187,9 @@ Proof ProvedOnWholeRuns(const ProofContext& context, const Hypothesis& as_given,
     if (fitted.ok()) whole.sets.push_back(SetOf(context, fitted));
   }
   for (size_t i = 2; i < whole.sets.size(); ++i) {
-    const double square = MeanSquare(whole.sets[i].near);
-    if (!TakesMost(given, square)) continue;
-    if (whole.best == whole.given || square < MeanSquare(whole.Best().near)) whole.best = i;
+    if (!TakesMost(whole.Given(), whole.sets[i])) continue;
+    if (whole.best == whole.given || MeanSquare(whole.sets[i].near) < MeanSquare(whole.Best().near))
+      whole.best = i;
   }
   // Windows may have found the same set with values that whole runs confirm. In that case, whole runs say
   // more about alternatives.

@@ -23,4 +23,7 @@ std::vector<WindowGap> OverRuns(const ProofContext& context, const ProvedSet& se
 // The squared gap of whole runs: the mean of all squared residuals; infinite where a run cannot be simulated.
 double MeanSquare(const std::vector<WindowGap>& runs);
 
+// Whether the set takes most of what the model as given leaves of whole runs, over which it was judged.
+bool TakesMost(const ProvedSet& given, const ProvedSet& set);
+
 }  // namespace hydro::diagnose

@@ -209,6 +209,23 @@ std::vector<std::string> LimitRemarks(const model::Parameters& model,
   return remarks;
 }
 
+void RequireMotion(const std::vector<const RunData*>& runs, const std::string& role) {
+  std::vector<std::string> names;
+  for (const RunData* run : runs) {
+    const std::vector<double>& command = run->stimulus.voltage;
+    const bool driven = std::any_of(command.begin(), command.end(), [](double v) { return v != 0; });
+    const bool moves = std::any_of(run->signals.begin(), run->signals.end(), [](const SignalData& signal) {
+      return maths::RangeOf(signal.values).size() > 2 * kHardlyMoves * signal.noise;
+    });
+    if (driven || moves) return;
+    names.push_back(run->name);
+  }
+  if (names.empty()) return;
+  throw InputError(RunsNamed(names) + ": found " + role +
+                   " recordings in which nothing is commanded and nothing moves, allowed are such beside one "
+                   "with motion: every model predicts rest, so nothing could be judged");
+}
+
 std::vector<std::string> MotionRemarks(const std::vector<const RunData*>& runs) {
   MotorTurns turned;
   double most_pressure = 0;

@@ -20,6 +20,10 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
 // way, or because pressures hardly change.
 std::vector<std::string> MotionRemarks(const std::vector<const RunData*>& runs);
 
+// Throws InputError where nothing is commanded and nothing moves in any of the runs: whatever the model, it
+// predicts rest, so that they cannot show that it is right. `role`: "fitted" or "held-out".
+void RequireMotion(const std::vector<const RunData*>& runs, const std::string& role);
+
 // "run sine: motor_speed is late by 0.334 +- 0.013 s relative to p1 and p2"
 std::string DelayRemark(const ClockDelay& delay);
 

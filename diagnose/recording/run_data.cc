@@ -224,6 +224,15 @@ size_t CountValid(const RunData& run) {
   return count;
 }
 
+bool HaveOil(const std::vector<const RunData*>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const RunData* run) {
+    const auto is_pressure = [](const SignalData& signal) {
+      return signal.channel == model::Channel::kP1 || signal.channel == model::Channel::kP2;
+    };
+    return !run->stimulus.bypass || std::any_of(run->signals.begin(), run->signals.end(), is_pressure);
+  });
+}
+
 double ShortestDuration(const std::vector<const RunData*>& runs) {
   double shortest = runs.front()->duration();
   for (const RunData* run : runs) shortest = std::min(shortest, run->duration());

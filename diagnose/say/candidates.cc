@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kNotTried = std::numeric_limits<double>::quiet_NaN();
 
-std::string GapOfWindows(const ProvedSet& set) {
-  return set.tested() ? ShortNumber(std::sqrt(TypicalGap(set.near)), 3) : "";
+std::string GapOfWindows(const std::vector<WindowGap>& windows) {
+  return IsTested(windows) ? ShortNumber(std::sqrt(TypicalGap(windows)), 3) : "";
 }
 
 // Whether the set has all of the best one's effects and more.
@@ -95,11 +95,16 @@ class Ranking {
       return "could not be tried: it cannot be simulated over the held-out " +
              std::string(proof_.OnWindows() ? "windows" : "runs");
     const std::string of = proof_.OnWindows() ? "the gap of windows" : "the gap of whole runs";
-    const std::string gap = GapOfWindows(*set), best = GapOfWindows(proof_.Best());
+    const std::string gap = GapOfWindows(set->near), best = GapOfWindows(proof_.Best().near);
     if (set == &proof_.Best()) return "it leaves a gap of " + gap;
     if (AddsToBest(*set, proof_.Best()))
       return "added to what was found, it changes " + of + " only from " + best + " to " + gap;
-    return of + " is " + gap + " with it, " + best + " with what was found";
+    const std::string both = of + " is " + gap + " with it, " + best + " with what was found";
+    if (!(TypicalGap(set->near) < TypicalGap(proof_.Best().near))) return both;
+    const std::vector<WindowGap>&far = set->far, &best_far = proof_.Best().far;
+    if (!far.empty() && !best_far.empty() && TypicalGap(far) > TypicalGap(best_far))
+      return both + "; but over four times as long " + GapOfWindows(far) + " and " + GapOfWindows(best_far);
+    return both + ", by less than an effect, or values that are far off, have to gain";
   }
 
   const Proof& proof_;

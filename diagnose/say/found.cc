@@ -7,6 +7,7 @@
 #include "base/word_list.h"
 #include "diagnose/fit/closure.h"
 #include "diagnose/prove/blind_changes.h"
+#include "diagnose/prove/whole_runs.h"
 #include "diagnose/say/claims.h"
 #include "diagnose/say/found_values.h"
 #include "diagnose/say/shown.h"
@@ -109,24 +110,45 @@ bool MayBeTrue(const ProvedSet& set, const Diagnosis& d) {
   return false;
 }
 
+// The weight of what one set has and another has not: that of its least likely effect. What balances cannot
+// see has the odds of any effect.
+double WeightBeyond(const ProvedSet& set, const ProvedSet& other, const Diagnosis& d) {
+  double least = 1;
+  for (const Change& change : set.Effects()) {
+    if (other.hypothesis.Has(change)) continue;
+    const double unseen = IsUnseenByBalances(change.effect) ? kOddsOfAChange : 0;
+    least = std::min(least, std::max(unseen, WeightOf(change, d.explanations)));
+  }
+  return least;
+}
+
+// What the set has to gain more than the best one, because the balances hold it to be less likely: an effect
+// that does nothing explains nothing.
+double Dearer(const ProvedSet& other, const ProvedSet& best, const Diagnosis& d) {
+  constexpr double kLeastWeight = 1e-3;  // as in PriceOf(): no balance is surer of a form
+  if (other.Effects().empty()) return std::max(0.0, other.price - best.price);
+  const double rival = std::max(kLeastWeight, WeightBeyond(other, best, d)),
+               own = WeightBeyond(best, other, d);
+  return FallWorth(std::max(0.0, std::log(std::max(own, kLeastWeight) / rival)));
+}
+
 // The places of sets that explain as much without the change.
 std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagnosis& d) {
   std::vector<size_t> ties;
   for (size_t i = 0; i < proof.sets.size(); ++i) {
     const ProvedSet& other = proof.sets[i];
     if (!other.tested() || other.hypothesis.Has(change)) continue;
-    // The windows have to distinguish sets that may be true by the balances, by more than the difference
-    // between sets that predict equally well. Values alone may be true whatever the balances say, unless the
+    // Two or three runs scatter too much to tell sets apart, but what leaves most of the gap replaces
+    // nothing.
+    if (!proof.OnWindows() && !TakesMost(proof.Given(), other)) continue;
+    // The windows and the balances together have to distinguish sets that may be true, by nine to one, or by
+    // twice the error of the windows. Values alone may be true whatever the balances say, unless the
     // windows support the effect at all.
     const bool may_be = MayBeTrue(other, d);
     if (!may_be && !other.Effects().empty()) continue;
     const GapFall fall = FallOf(other.near, proof.Best().near);
-    const double told_apart = std::max(kEqual, (may_be ? kToldApart : 1) * fall.error);
-    // A less likely replacement, an effect or values that are far off, has to be worth its price: an effect
-    // that does nothing explains nothing.
-    const double dearer = std::max(0.0, other.price - proof.Best().price) +
-                          std::max(0.0, other.price_of_values - proof.Best().price_of_values);
-    if (fall.windows > 0 && fall.logarithm + dearer > told_apart) continue;
+    const double told_apart = std::max(may_be ? kEven : kEqual, (may_be ? kToldApart : 1) * fall.error);
+    if (fall.windows > 0 && fall.logarithm + Dearer(other, proof.Best(), d) > told_apart) continue;
     if (!InPlace(other, proof.Best()).empty()) ties.push_back(i);
   }
   return ties;

@@ -41,8 +41,7 @@ std::map<std::vector<std::string>, double> ProvedWeights(const Proof& proof) {
   for (const ProvedSet& set : proof.sets) {
     if (!set.tested()) continue;
     // With the effects' prices the balances would count twice.
-    const double near = set.near.empty() ? 0 : FallOf(proof.Best().near, set.near).logarithm;
-    const double fall = near - (set.price_of_values - proof.Best().price_of_values);
+    const double fall = set.near.empty() ? 0 : FallOf(proof.Best().near, set.near).logarithm;
     const auto effects = static_cast<double>(set.Effects().size());
     const double more = std::max(0.0, effects - static_cast<double>(proof.Best().Effects().size()));
     const double weight = std::exp(std::min(0.0, LogOddsOf(fall - more * kPartOfAnEffect)));

@@ -129,6 +129,12 @@ bool ReplacesValves(const std::vector<EffectDescription>& effects) {
                      [](const EffectDescription& effect) { return BuildEffect(effect)->replaces_valves(); });
 }
 
+bool ExcludeEachOther(const EffectDescription& one, const EffectDescription& other) {
+  const std::unique_ptr<Effect> a = BuildEffect(one), b = BuildEffect(other);
+  return (a->limits_torque() && b->limits_torque()) || (a->replaces_valves() && b->replaces_valves()) ||
+         (a->p_3_state() >= 0 && b->p_3_state() >= 0);
+}
+
 const std::vector<EffectInfo>& EffectCatalogue() { return TheCatalogue().infos(); }
 
 bool HasRole(const std::string& effect, Role role) {

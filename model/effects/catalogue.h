@@ -45,4 +45,8 @@ std::unique_ptr<Effect> BuildEffect(const EffectDescription& effect);
 // Whether one of these effects, which have been checked, replaces the ideal one-way valves.
 bool ReplacesValves(const std::vector<EffectDescription>& effects);
 
+// Whether a model can have only one of these two effects, which have been checked: both limit the motor's
+// torque, replace the ideal valves, or give p_3 a state.
+bool ExcludeEachOther(const EffectDescription& one, const EffectDescription& other);
+
 }  // namespace hydro::model

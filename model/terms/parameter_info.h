@@ -105,6 +105,8 @@ struct ParameterInfo {
   // The base parameter to which this parameter is added as the same term. The gap finder frees one of the
   // two: the base parameter where that is not 0.
   double Parameters::*adds_to = nullptr;
+  // The base parameter of whose two sides this number is the relative difference.
+  double Parameters::*sides = nullptr;
   // A size at which the effect shows on the paper's rig (Table 1), or that a base parameter has there. Tests
   // run every effect of the catalogue with it.
   double example = 0;

@@ -52,6 +52,23 @@ std::vector<runs::MeasuredRun> RunsOf(const model::ModelDescription& truth, doub
   return all;
 }
 
+// Tests that where k_1 is a little wrong, and all torques are measured by it, intervals hold the true values.
+TEST(BareMotor, IntervalsIncludeWhatTorquesAreMeasuredBy) {
+  model::ModelDescription truth = Bare(), given = Bare();
+  given.parameters.k_1 *= 0.97;
+  given.parameters.b *= 1.4;
+  given.parameters.T_s *= 0.6;
+  const diagnose::Diagnosis d = diagnose::Diagnose(given, RunsOf(truth, 4, 3), {}, {}, {});
+  ASSERT_FALSE(d.parameters.empty()) << d.sentence;
+  for (const diagnose::ChangedParameter& changed : d.parameters) {
+    const double right =
+        truth.parameters.*model::BaseParameters()[model::BasePlace(changed.fitted.name)].member;
+    EXPECT_LT(changed.fitted.low, right) << changed.fitted.name;
+    EXPECT_GT(changed.fitted.high, right) << changed.fitted.name;
+    EXPECT_LT(changed.fitted.high - changed.fitted.low, 0.5 * right) << changed.fitted.name;
+  }
+}
+
 double Fitted(const diagnose::Diagnosis& d, double model::Parameters::*member) {
   return d.model.parameters.*member;
 }

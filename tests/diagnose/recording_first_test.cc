@@ -56,6 +56,22 @@ TEST(RecordingFirst, Sound) {
   EXPECT_THAT(report.limits, ::testing::ElementsAre(HasSubstr("no pressure was recorded")));
 }
 
+// Tests that a command in the wrong row stands first where a gap is left, and only there.
+TEST(RecordingFirst, ALateCommandComesFirst) {
+  CheckedRecordings checked;
+  checked.commands.late = {"the voltage is late by 3 rows"};
+  Diagnosis open, closed;
+  open.verdict = Verdict::kPartly;
+  closed.verdict = Verdict::kNamed;
+  open.sentence = closed.sentence = "Something is missing.";
+  AddChecked(checked, &open);
+  AddChecked(checked, &closed);
+  EXPECT_EQ(open.sentence, "Mend the recording first: the voltage is late by 3 rows. Something is missing.");
+  EXPECT_EQ(open.verdict, Verdict::kPartly);
+  EXPECT_EQ(closed.sentence, "Something is missing.");
+  EXPECT_THAT(closed.remarks, ::testing::ElementsAre("the voltage is late by 3 rows"));
+}
+
 // Tests that a run that cannot be judged is said to be that, and why.
 TEST(RecordingFirst, CannotBeJudged) {
   EXPECT_THAT(ReportOnRecordings(kGiven, Bench(1, 1), 1).unjudged, IsEmpty());

@@ -1,11 +1,13 @@
 // The same rig in other units moves in the same way: no term of the model depends on what its numbers are in.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "base/random.h"
+#include "model/effects/catalogue.h"
 #include "tests/model/some_of_each.h"
 #include "tests/model_in_units.h"
 
@@ -84,11 +86,16 @@ model::ModelDescription DrawnRig(Random& random, bool linear) {
   model.parameters.mgl = 600 * (2 * random.Unit() - 1);
   for (const auto& [id, effect] : SomeOfEach()) {
     if (random.Unit() >= 0.1) continue;
+    const bool excluded = std::any_of(
+        model.effects.begin(), model.effects.end(),
+        [&](const model::EffectDescription& own) { return model::ExcludeEachOther(own, effect); });
     model.effects.push_back(effect);
     try {
       const model::Equations accepted(model, {});
+      EXPECT_FALSE(excluded) << effect.id;
     } catch (const model::ModelError& error) {
       // A rig has one accumulator and one kind of one-way valves.
+      EXPECT_TRUE(excluded) << effect.id;
       EXPECT_THAT(error.what(), ::testing::HasSubstr("second of its kind"));
       model.effects.pop_back();
     }

@@ -41,6 +41,7 @@ class UnequalAreas : public EffectOf<UnequalAreas> {
                                              .min = -0.95,
                                              .max = 0.95,
                                              .meaning = "(c_2 - c_1)/(c_1 + c_2)",
+                                             .sides = &Parameters::c,
                                              .example = 0.3}},
                              .needs_oil = true},
                     .make = MakeEffect<UnequalAreas>});

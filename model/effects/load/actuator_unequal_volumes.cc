@@ -27,6 +27,7 @@ class UnequalVolumes : public EffectOf<UnequalVolumes> {
                               .min = -0.95,
                               .max = 0.95,
                               .meaning = "(V_2 - V_1)/(V_1 + V_2) at mid-stroke",
+                              .sides = &Parameters::V_ms,
                               .example = 0.3}},
               .needs_oil = true,
               // An arm whose zero is not at mid-stroke looks the same.

@@ -45,6 +45,7 @@ class UnequalDisplacements : public EffectOf<UnequalDisplacements> {
                               .min = -0.95,
                               .max = 0.95,
                               .meaning = "(D_2 - D_1)/(D_1 + D_2)",
+                              .sides = &Parameters::D,
                               .example = 0.2}},
               .needs_oil = true,
               // Pumps with three ports are rare, and the owner of one knows about it.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "base/input_error.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_remarks.h"
 #include "runs/measured/sample_times.h"
@@ -119,6 +120,37 @@ TEST(Alignment, TimingCountsAsNoise) {
                                 &clocks);
   EXPECT_EQ(clocks.size(), 2u);
   EXPECT_GT(late.Find(model::Channel::kP2)->noise, 2 * plain.Find(model::Channel::kP2)->noise);
+}
+
+// Tests that pressures that hardly leave their noise are no clock, and that a long run is read in part: what
+// is wrong with every model would look sure in it.
+TEST(Alignment, NeedsPressuresThatChange) {
+  runs::MeasuredRun run = Late(Recorded(), {{&runs::MeasuredRun::voltage, 0.1},
+                                            {&runs::MeasuredRun::motor_speed, 0.1},
+                                            {&runs::MeasuredRun::motor_angle, 0.1}});
+  EXPECT_THAT(AlignClocks(Table1With(), &run), ::testing::SizeIs(2));
+  run.p1.noise = run.p2.noise = 1000;
+  EXPECT_THAT(AlignClocks(Table1With(), &run), IsEmpty());
+}
+
+// Tests that runs in which nothing moves judge no model, unless one beside them has motion, or a command that
+// moves nothing.
+TEST(RequireMotion, RefusesRest) {
+  runs::MeasuredRun rest = Recorded();
+  const RunData moves = PrepareRun(rest, Table1With());
+  for (const auto signal : {&runs::MeasuredRun::motor_speed, &runs::MeasuredRun::motor_angle,
+                            &runs::MeasuredRun::p1, &runs::MeasuredRun::p2}) {
+    double sign = 0.01;
+    for (double& value : (rest.*signal).values) value = (sign = -sign);
+  }
+  const RunData sticks = PrepareRun(rest, Table1With());
+  RunData rests = PrepareRun(rest, Table1With());
+  std::fill(rests.stimulus.voltage.begin(), rests.stimulus.voltage.end(), 0.0);
+  EXPECT_NO_THROW(RequireMotion({&rests, &moves}, "fitted"));
+  EXPECT_NO_THROW(RequireMotion({&sticks}, "fitted"));
+  EXPECT_NO_THROW(RequireMotion({}, "held-out"));
+  EXPECT_THAT([&] { RequireMotion({&rests}, "held-out"); },
+              ::testing::ThrowsMessage<InputError>(HasSubstr("found held-out recordings in which nothing")));
 }
 
 // Tests the sentences about recordings that hold little, or are not what they claim to be.

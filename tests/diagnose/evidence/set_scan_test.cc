@@ -123,18 +123,6 @@ TEST(SetWeightsTest, VariantsAreOneExplanation) {
   EXPECT_EQ(weights.explanations.front().set.size(), 1u);
 }
 
-// Tests that a change worth less than a tenth of the whole gain has no weight, though its own gain is clear.
-TEST(SetWeightsTest, AnAdditionThatGainsLittleIsNone) {
-  const SetEvidence evidence(
-      MakeRows({.truth = {{"pump.drag:k", 2.0}, {"motor.cogging|7:s", 0.12}}, .runs = 5, .rows = 100}));
-  SetScores scores = ScanSets(evidence);
-  ASSERT_THAT(scores.BestFirst().front().set, ElementsAre("motor.cogging|7", "pump.drag"));
-  ASSERT_GT(scores.Score({"motor.cogging|7", "pump.drag"}), scores.Score({"pump.drag"}) + 3);
-  const ExplanationWeights weights = WeighExplanations(&scores);
-  EXPECT_THAT(weights.explanations.front().set, ElementsAre("pump.drag"));
-  EXPECT_GT(weights.explanations.front().weight, 0.99);
-}
-
 // Tests that with one run the weights are the tempered scores, which no draw moves.
 TEST(SetWeightsTest, OneRun) {
   const SetEvidence evidence(MakeRows({.truth = {{"pump.drag:k", 0.05}}, .runs = 1}));

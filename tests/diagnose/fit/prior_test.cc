@@ -30,27 +30,25 @@ TEST(KnownBefore, WeighsByUncertainty) {
   EXPECT_DOUBLE_EQ(prior.weight[1], 2 / std::pow(0.1 * Table1().T_s, 2));
 }
 
-// Tests that values lose odds by standard deviations, on both sides, slowly where they are many; and what was
-// given as 0 none.
-TEST(OddsLostBy, CountsDeviations) {
-  const model::ModelDescription given = Table1With();
-  EXPECT_EQ(diagnose::OddsLostBy(given.parameters, given), 0);
-  const auto lost = [&](double factor) {
-    model::Parameters values = given.parameters;
-    values.J *= factor;
-    return diagnose::OddsLostBy(values, given);
-  };
-  constexpr double kDeviation = 0.05;  // of a data sheet's value
-  EXPECT_EQ(lost(std::exp(1.99 * kDeviation)), 0);
-  EXPECT_EQ(lost(std::exp(-1.99 * kDeviation)), 0);
-  EXPECT_NEAR(lost(std::exp(3 * kDeviation)), std::log(10.0 / 5), 1e-9);
-  EXPECT_NEAR(lost(std::exp(-3 * kDeviation)), std::log(10.0 / 5), 1e-9);
-  EXPECT_NEAR(lost(std::exp(100 * kDeviation)), std::log(1e4 / 5), 1e-3);
-  EXPECT_NEAR(lost(0), lost(0.01), 1e-9) << "none of it is no farther than a hundredth";
-  model::Parameters values = given.parameters;
-  ASSERT_EQ(values.f, 0);
-  values.f = 1;
-  EXPECT_EQ(diagnose::OddsLostBy(values, given), 0);
+// Tests that the two sides of a cylinder are known as its mean is, and other numbers of the model's own
+// effects as friction is; that what was found is not known at all.
+TEST(KnownBefore, NumbersOfTheModelsOwnEffects) {
+  const model::EffectDescription areas{"actuator.unequal_areas", {{"difference", 0.2}}, {}},
+      bias{"amp.bias", {{"bias", 2}}, {}},
+      asymmetry{"pump.friction_asymmetry", {{"coulomb", 3}, {"viscous", 0}}, {}};
+  diagnose::Hypothesis hypothesis = Known(2);
+  auto known = std::make_shared<diagnose::Knowledge>(*hypothesis.known);
+  known->given.effects = {areas, bias};
+  hypothesis.known = known;
+  hypothesis.model.effects = {areas, bias, asymmetry};
+  hypothesis.base.clear();
+  hypothesis.effects = {areas.id, bias.id, asymmetry.id};
+  const diagnose::Prior prior = diagnose::KnownBefore(hypothesis);
+  ASSERT_EQ(prior.weight.size(), 4u);
+  EXPECT_NEAR(prior.weight[0], 2 / (std::pow(0.01 * (1 - 0.04), 2) / 2), 1e-6);
+  EXPECT_NEAR(prior.weight[1], 2 / (0.6 * 0.6), 1e-9);
+  EXPECT_EQ(prior.weight[2], 0);
+  EXPECT_EQ(prior.weight[3], 0);
 }
 
 // Tests that a fit weighs what the balances measured beside what was known, a third of it for what is wrong

@@ -73,19 +73,6 @@ TEST(GapFall, OneWindowThatDivergesDoesNotRule) {
   EXPECT_NEAR(FallOf(Windows(5), after).logarithm, (19 * std::log(5.0 / 4.0) - std::log(4.0)) / 20, 1e-3);
 }
 
-// Tests that values that are far from what is known have to be worth it, against an effect and against
-// themselves.
-TEST(EffectIsKept, ValuesInItsPlaceHaveAPrice) {
-  ProvedSet values = SetOf({}, Windows(4.9));
-  const ProvedSet with = SetOf({"amp.lag"}, Windows(5));
-  EXPECT_FALSE(IsEffectKept(with, values, 0));
-  EXPECT_GT(WorthOf(with, values).logarithm, 0);
-  values.price_of_values = 0.1;
-  EXPECT_TRUE(IsEffectKept(with, values, 0));
-  EXPECT_NEAR(WorthOf(with, values).logarithm, std::log(5 / 4.9) - 0.1, 1e-9);
-  EXPECT_FALSE(PredictsBetter(values, SetOf({}, Windows(5))));
-}
-
 // Tests that windows that one of both cannot be tested on are left out.
 TEST(GapFall, LeavesOutWhatIsNotTested) {
   std::vector<WindowGap> after = Windows(4, 0);

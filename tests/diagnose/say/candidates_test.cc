@@ -65,6 +65,20 @@ TEST(Candidates, TakenFirstOthersWithAReason) {
   EXPECT_TRUE(std::isnan(Named(all, "parameter beta").p_value));
 }
 
+// Tests that the reason is no contradiction where a candidate predicts better than what was found: over
+// longer windows it does not, or the difference is too small.
+TEST(Candidates, WhyNotThoughItPredictsBetter) {
+  diagnose::ProofContext context;
+  context.given = Table1With();
+  diagnose::ProvedSet drifts = Leaving(3.6, Freed({}, {kDelay}));
+  drifts.far = Leaving(100, Freed({})).near;
+  const Proof proof = ProofOf(
+      {Leaving(100, Freed({})), drifts, Leaving(3.9, Freed({}, {kDrag})), Leaving(4, Freed({}, {kLag}))});
+  const std::vector<Candidate> all = CandidatesOf(context, proof, {}, {});
+  EXPECT_THAT(Named(all, "amp.delay").rejected_because, HasSubstr("but over four times as long 10 and 2"));
+  EXPECT_THAT(Named(all, "pump.quadratic_drag").rejected_because, HasSubstr("by less than an effect"));
+}
+
 std::vector<std::string> Chosen(const std::vector<ChoiceWithout>& choices) {
   std::vector<std::string> chosen;
   for (const ChoiceWithout& choice : choices) chosen.push_back(choice.run + ": " + choice.chosen);

@@ -77,6 +77,25 @@ TEST(DescribeFound, TiesThatTheProofDoesNotTellApart) {
       << "where balances say nothing";
 }
 
+// Tests that weights tell apart what windows do not only by nine to one: an effect of a third of the weight
+// is a tie, one of a fiftieth is none.
+TEST(DescribeFound, TiesWhatWeightsDoNotSeparate) {
+  const Proof proof = OfALag({Leaving(1.0, Freed({}, {kDelay}), 1.2)});
+  EXPECT_THAT(Described(proof, {{{"amp.lag"}, 0.7}, {{"amp.delay"}, 0.3}}, 2).effects[0].tied_with,
+              ElementsAre("amp.delay"));
+  EXPECT_THAT(Described(proof, {{{"amp.lag"}, 0.98}, {{"amp.delay"}, 0.02}}, 2).effects[0].tied_with,
+              IsEmpty());
+}
+
+// Tests that over two whole runs, whose gaps scatter, what leaves most of the gap replaces nothing.
+TEST(DescribeFound, WhatLeavesMostOfWholeRunsIsNoTie) {
+  const ProvedSet value = Leaving({2.4, 1.4}, Freed({"b"}, {{"", {}, "b"}}));
+  Proof proof = ProofOf({Leaving({2.5, 1.5}, Freed({})), value, Leaving({0.9, 1.1}, Freed({}, {kLag}))});
+  EXPECT_THAT(Described(proof).effects[0].tied_with, ElementsAre("parameter b")) << "of windows";
+  proof.seconds = 0;
+  EXPECT_THAT(Described(proof).effects[0].tied_with, IsEmpty());
+}
+
 // Tests that what balances cannot see may stand in an effect's place whatever they say, that other values
 // may, and that a curve may not.
 TEST(DescribeFound, TiesWithTheUnseenAndWithValues) {
