@@ -99,12 +99,12 @@ class Ranking {
     if (set == &proof_.Best()) return "it leaves a gap of " + gap;
     if (AddsToBest(*set, proof_.Best()))
       return "added to what was found, it changes " + of + " only from " + best + " to " + gap;
-    const std::string both = of + " is " + gap + " with it, " + best + " with what was found";
+    std::string both = of + " is " + gap + " with it, " + best + " with what was found";
     if (!(TypicalGap(set->near) < TypicalGap(proof_.Best().near))) return both;
     const std::vector<WindowGap>&far = set->far, &best_far = proof_.Best().far;
     if (!far.empty() && !best_far.empty() && TypicalGap(far) > TypicalGap(best_far))
       return both + "; but over four times as long " + GapOfWindows(far) + " and " + GapOfWindows(best_far);
-    return both + ", by less than an effect, or values that are far off, have to gain";
+    return both + ", by less than an effect has to gain";
   }
 
   const Proof& proof_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/word_list.h"
+#include "diagnose/evidence/change_set.h"
 #include "diagnose/fit/closure.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/whole_runs.h"
