@@ -7,6 +7,7 @@
 
 #include "base/maths/matrix_functions.h"
 #include "base/parallel.h"
+#include "diagnose/fit/likeliest_scale.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/recording/sample_interval.h"
 
@@ -23,9 +24,8 @@ using Eigen::MatrixXd;
 // the numbers found were off by up to two percent without any sign of it in the runs (bench/gap_score).
 constexpr double kIdealised = 0.005;
 
-// The same for each of the model's own numbers that are held, unless all torques are measured by it: it is
-// then off by as much as it is known. An effect that was found stands beside their terms, so a small effect
-// shifts by this fraction of a large term. Calibrated on the same rigs.
+// The same for each of the model's own numbers that are held. An effect that was found stands beside their
+// terms, so a small effect shifts by this fraction of a large term. Calibrated on the same rigs.
 constexpr double kIdealisedHeld = 0.0003;
 
 // Standard deviation of a time, in sample intervals, for reactions that the model takes to be immediate and
@@ -140,6 +140,16 @@ std::vector<FreeParameter> WithinPhysics(Hypothesis hypothesis) {
   return hypothesis.Free();
 }
 
+// The relative error of all torques where one of them measures the others: as it is known.
+double YardstickError(const model::ModelDescription& model, const std::vector<const RunData*>& runs) {
+  double error = 0;
+  for (size_t base = 0; base < model::BaseParameters().size(); ++base) {
+    if (IsYardstick(model::BaseParameters()[base].member, runs))
+      error = std::max(error, model::UncertaintyOf(model, base));
+  }
+  return error;
+}
+
 Interval Around(const FreeParameter& parameter, double variance, double sample) {
   const double unseen =
       std::hypot(kIdealised * parameter.value, parameter.role == model::Role::kTime ? kInstant * sample : 0);
@@ -188,12 +198,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
     const bool is_free = std::any_of(free.begin(), free.end(),
                                      [&](const FreeParameter& one) { return one.name == numbers[i].name; });
     (is_free ? own : held).push_back(static_cast<Index>(i));
-    if (is_free) continue;
-    const bool measures = numbers[i].unknown.kind == model::Unknown::Kind::kBase &&
-                          IsYardstick(model::BaseParameters()[numbers[i].unknown.index].member, runs);
-    const double relative =
-        measures ? model::UncertaintyOf(fitted.hypothesis.model, numbers[i].unknown.index) : kIdealisedHeld;
-    off.push_back(relative * numbers[i].value / numbers[i].Slope());
+    if (!is_free) off.push_back(kIdealisedHeld * numbers[i].value / numbers[i].Slope());
   }
   const MatrixXd information = InformationOf(all, discrepancy, KnownVariances(all.hypothesis));
   const MatrixXd covariance = CovarianceOf(information(own, own));
@@ -206,10 +211,15 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   // The fit follows the held numbers to the extent that the runs cannot distinguish them from the free ones.
   const Map<const Eigen::VectorXd> off_by(off.data(), static_cast<Index>(off.size()));
   const MatrixXd by_held = covariance * information(own, held) * off_by.asDiagonal();
+  const double yardstick = YardstickError(fitted.hypothesis.model, runs);
   std::vector<Interval> intervals;
   for (size_t i = 0; i < free.size(); ++i) {
     const auto at = static_cast<Index>(i);
-    intervals.push_back(Around(free[i], variance(at) + by_held.row(at).squaredNorm(), sample));
+    const double by_yardstick = FollowsTorques(fitted.hypothesis.model, free[i])
+                                    ? yardstick * std::abs(free[i].value) / free[i].Slope()
+                                    : 0;
+    intervals.push_back(
+        Around(free[i], variance(at) + by_held.row(at).squaredNorm() + by_yardstick * by_yardstick, sample));
   }
   return intervals;
 }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "model/effects/catalogue.h"
+#include "model/response.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
@@ -140,6 +141,21 @@ void MoveToLikeliestScale(const model::ModelDescription& given, const std::vecto
   const Scale scale = Likeliest(followers);
   for (const Follower& one : followers) model->parameters.*one.member *= std::exp(one.By(scale));
   if (scale.flows != 0) ScaleEffects(scale.flows, model);
+}
+
+bool FollowsTorques(const model::ModelDescription& model, const FreeParameter& parameter) {
+  const size_t place = parameter.unknown.index;
+  if (parameter.unknown.kind == model::Unknown::Kind::kBase) {
+    const auto member = model::BaseParameters()[place].member;
+    const auto torques = {&Parameters::k_1, &Parameters::T_pmax, &Parameters::J,
+                          &Parameters::b,   &Parameters::T_s,    &Parameters::f};
+    return std::find(torques.begin(), torques.end(), member) != torques.end();
+  }
+  const model::EffectParameter number = model::EffectParameters(model)[place];
+  const std::vector<model::ParameterInfo>& infos =
+      model::FindEffect(model.effects[number.effect])->parameters;
+  const auto info = std::ranges::find(infos, number.name, &model::ParameterInfo::name);
+  return info->unit.find("lbf") != std::string::npos && PowerOf(*info) == 1;
 }
 
 void MoveToLikeliestScale(const model::ModelDescription& given, Hypothesis* hypothesis) {

@@ -26,4 +26,7 @@ void MoveToLikeliestScale(const model::ModelDescription& given, const std::vecto
 // The same for what a fit has found.
 void MoveToLikeliestScale(const model::ModelDescription& given, Hypothesis* hypothesis);
 
+// Whether a free number grows with all torques of the motor: it is one, or a friction or inertia.
+bool FollowsTorques(const model::ModelDescription& model, const FreeParameter& parameter);
+
 }  // namespace hydro::diagnose
