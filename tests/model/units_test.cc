@@ -84,7 +84,8 @@ model::ModelDescription DrawnRig(Random& random, bool linear) {
   }
   model.parameters.f = 1e-4 * random.Unit();
   model.parameters.mgl = 600 * (2 * random.Unit() - 1);
-  for (const auto& [id, effect] : SomeOfEach()) {
+  for (const auto& some : SomeOfEach()) {
+    const model::EffectDescription& effect = some.second;
     if (random.Unit() >= 0.1) continue;
     const bool excluded = std::any_of(
         model.effects.begin(), model.effects.end(),
