@@ -54,12 +54,11 @@ void AddGivenEffects(ColumnMaker* maker) {
   for (size_t i = 0; i < all.size(); ++i) {
     if (!all[i].IsStated(given)) continue;
     const std::string& id = given.effects[all[i].effect].id;
-    const model::Role role = ParameterOf(id, all[i].name).role;
+    const bool phase = ParameterOf(id, all[i].name).role == model::Role::kPhase;
     model::ModelDescription copy = given;
     const double value = all[i].In(&copy);
-    const bool phase = role == model::Role::kPhase;
-    if (role == model::Role::kPeriods || (value == 0 && !phase)) continue;
     const double deviation = DeviationOf(given, all[i]);
+    if (deviation == 0 || (value == 0 && !phase)) continue;
     const int column =
         maker->Add({id + "." + all[i].Label(), "", phase ? deviation : deviation / std::abs(value), false},
                    {.kind = ColumnMeaning::Kind::kGiven, .base = i});

@@ -19,7 +19,8 @@ namespace {
 using Run = runs::MeasuredRun;
 using Signal = runs::MeasuredSignal Run::*;
 
-// Pressures that hardly leave their noise are no clock to hold the others against.
+// Pressures that hardly leave their noise are no clock to hold the others against. White noise alone spans
+// nine of its standard deviations in a long run, so that as much again is motion.
 bool Changes(const runs::MeasuredSignal& signal) {
   const double noise = signal.noise.value_or(EstimateNoise(signal.values));
   return maths::RangeOf(signal.values).size() > 4 * kHardlyMoves * noise;

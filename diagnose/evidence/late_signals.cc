@@ -180,9 +180,10 @@ class ClockSteps {
     // change.
     const Eigen::LLT<MatrixXd> factor(known);
     const VectorXd all = moved + more;
-    signals.evidence = fit.log_evidence - (all.dot(factor.solve(all)) - more.dot(factor.solve(more))) / 2;
+    const double evidence =
+        fit.log_evidence - (all.dot(factor.solve(all)) - more.dot(factor.solve(more))) / 2;
     const double counted = std::min(1.0, kCounted / (run_.time.back() - run_.time.front()));
-    signals.score = signals.evidence * counted / kTemperature +
+    signals.score = evidence * counted / kTemperature +
                     static_cast<double>(late_.size()) * ChangeOdds({"late"}).LogOdds({"late"});
     return signals;
   }

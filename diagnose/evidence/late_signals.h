@@ -26,8 +26,7 @@ std::vector<runs::SignalDelay> OfSignals(const Delays& delays);
 double LargestDelay(const runs::MeasuredRun& run);
 
 struct LateSignals {
-  double evidence = 0;               // log evidence of the rows up to 2 Hz
-  double score = 0;                  // the same, tempered, with the odds of each late signal
+  double score = 0;  // tempered log evidence of the rows up to 2 Hz, with the odds of each late signal
   std::vector<double> delay, error;  // s, in the order of what may be late; standard errors
 };
 

@@ -69,9 +69,7 @@ double DeviationOf(const model::ModelDescription& given, const model::EffectPara
 
 bool IsYardstick(double model::Parameters::*member, const std::vector<const RunData*>& runs) {
   if (member != &model::Parameters::k_1 && member != &model::Parameters::J) return false;
-  const bool driven = std::ranges::any_of(runs, [](const RunData* run) {
-    return std::ranges::any_of(run->stimulus.voltage, [](double v) { return v != 0; });
-  });
+  const bool driven = AreDriven(runs);
   if (member == &model::Parameters::J) return !driven;
   return !driven || !HaveOil(runs);
 }

@@ -93,7 +93,6 @@ GapFall WorthOf(const ProvedSet& from, const ProvedSet& to) {
 }
 
 double PriceOf(double weight) {
-  constexpr double kMostOdds = 1000;  // no balance is surer of a form: machines never match one exactly
   const double odds = std::clamp(weight / std::max(1 - weight, 1e-9), 1 / kMostOdds, kMostOdds);
   return kEven - FallWorth(std::log(odds));
 }

@@ -70,6 +70,8 @@ inline constexpr double kPartOfValues = 0.05;
 inline constexpr double kEqual = 0.01;
 // The odds of nine to one are worth this part of the gap.
 inline constexpr double kEven = 0.05, kWorthIt = 9;
+// No balance is surer of a form: machines never match one exactly.
+inline constexpr double kMostOdds = 1000;
 
 // Whether `with` is worth the price of the one effect that it has more than `without` over the near windows,
 // and does not make the far windows, if they were predicted, worse by kPartOfAnEffect. True where either set

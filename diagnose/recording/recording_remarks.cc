@@ -210,17 +210,15 @@ std::vector<std::string> LimitRemarks(const model::Parameters& model,
 }
 
 void RequireMotion(const std::vector<const RunData*>& runs, const std::string& role) {
+  if (runs.empty() || AreDriven(runs)) return;
   std::vector<std::string> names;
   for (const RunData* run : runs) {
-    const std::vector<double>& command = run->stimulus.voltage;
-    const bool driven = std::any_of(command.begin(), command.end(), [](double v) { return v != 0; });
     const bool moves = std::any_of(run->signals.begin(), run->signals.end(), [](const SignalData& signal) {
       return maths::RangeOf(signal.values).size() > 2 * kHardlyMoves * signal.noise;
     });
-    if (driven || moves) return;
+    if (moves) return;
     names.push_back(run->name);
   }
-  if (names.empty()) return;
   throw InputError(RunsNamed(names) + ": found " + role +
                    " recordings in which nothing is commanded and nothing moves, allowed are such beside one "
                    "with motion: every model predicts rest, so nothing could be judged");

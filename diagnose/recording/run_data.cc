@@ -233,6 +233,13 @@ bool HaveOil(const std::vector<const RunData*>& runs) {
   });
 }
 
+bool AreDriven(const std::vector<const RunData*>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const RunData* run) {
+    const std::vector<double>& command = run->stimulus.voltage;
+    return std::any_of(command.begin(), command.end(), [](double v) { return v != 0; });
+  });
+}
+
 double ShortestDuration(const std::vector<const RunData*>& runs) {
   double shortest = runs.front()->duration();
   for (const RunData* run : runs) shortest = std::min(shortest, run->duration());

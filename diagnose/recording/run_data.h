@@ -78,6 +78,8 @@ size_t CountValid(const RunData& run);
 // For several runs, s: the duration of the shortest, and the median time between successive samples of all.
 // Whether the oil takes part in any of the runs: a pressure was recorded, or a bypass was not open.
 bool HaveOil(const std::vector<const RunData*>& runs);
+// Whether anything is ever commanded in one of the runs.
+bool AreDriven(const std::vector<const RunData*>& runs);
 double ShortestDuration(const std::vector<const RunData*>& runs);
 double SampleInterval(const std::vector<const RunData*>& runs);
 // The inputs of the actuator, without the motion of a driven shaft.

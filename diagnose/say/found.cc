@@ -126,11 +126,10 @@ double WeightBeyond(const ProvedSet& set, const ProvedSet& other, const Diagnosi
 // What the set has to gain more than the best one, because the balances hold it to be less likely: an effect
 // that does nothing explains nothing.
 double Dearer(const ProvedSet& other, const ProvedSet& best, const Diagnosis& d) {
-  constexpr double kLeastWeight = 1e-3;  // as in PriceOf(): no balance is surer of a form
   if (other.Effects().empty()) return std::max(0.0, other.price - best.price);
-  const double rival = std::max(kLeastWeight, WeightBeyond(other, best, d)),
+  const double rival = std::max(1 / kMostOdds, WeightBeyond(other, best, d)),
                own = WeightBeyond(best, other, d);
-  return FallWorth(std::max(0.0, std::log(std::max(own, kLeastWeight) / rival)));
+  return FallWorth(std::max(0.0, std::log(std::max(own, 1 / kMostOdds) / rival)));
 }
 
 // The places of sets that explain as much without the change.

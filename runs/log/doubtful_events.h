@@ -15,9 +15,8 @@ namespace hydro::log {
 // - A message of this stack that is incomplete, where others on its channel are complete.
 // - A message without a checksum whose sender nearly is one that has messages with a checksum on that
 //   channel: a flipped bit in a session looks like one more sender.
-// - A description of a run without a checksum that differs from what its sender says otherwise: in any
-// message
-//   with a checksum or, where it has none, in most. Every reader needs the configuration and the model.
+// - A description of a run without a checksum that differs from what its sender says in any message with a
+//   checksum or, where it has none, in most. Every reader needs the configuration and the model.
 void DropDoubtful(const MappedFile& file, const std::vector<int64_t>& joins, std::vector<KeptEvent>& kept,
                   std::vector<LostBytes>& lost);
 
