@@ -93,7 +93,7 @@ class AuthenticationTest(stack.TestCase):
     # Tests that the commands, states, stops, failures and faults of an intruder without the key are refused,
     # counted and named, while the run continues as if they had not been sent: to the last bit, in lockstep.
     def test_intruder(self):
-        options = ("--duration", "1.5", *self.keyed)
+        options = ("--duration", "5", *self.keyed)  # in lockstep some 1.5 s, which the intruder has
         self.run_program("hydro-sim", stack.config("demo.toml"), *options, "-o", self.path("sim.lcmlog"))
         templates = {event.channel: event.data for event in event_log.read_events(self.path("sim.lcmlog"))}
         attacks = [

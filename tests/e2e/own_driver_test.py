@@ -103,46 +103,54 @@ class OwnDriverCase(stack.TestCase):
         return self.run_program("hydro-driver-check", *arguments, expect=expect, timeout=150)
 
 
+    def arrives(self, example):
+        """hydro-launch runs the example with its simulated device: the arm ends at its target, and the log shows the driver's run."""
+        log_file = self.path(example + ".lcmlog")
+        launch = self.launch(self.config(example), "--set", "limits.stale_input_s=0.3", "--log", log_file)
+        code = launch.wait(60)
+        skipped = re.search(r"\d+ of \d+ ticks \(.*\) were skipped", launch.stderr)
+        if skipped and code != 0 and "device_silent" in launch.stderr:
+            # A terminal's bytes wait for the kernel, whatever the priority of who reads them.
+            self.skipTest(f"this computer is too busy for a device: {skipped[0]}")
+        self.assertEqual(code, 0, launch.report())
+        self.assertRegex(launch.stderr + launch.stdout, "stands for the device.*nothing real moves")
+        log = event_log.Log(log_file)
+        self.run_program("hydro-log", "summary", log_file, "--json", self.path("summary.json"), "--force")
+        with open(self.path("summary.json"), encoding="utf-8") as file:
+            tracking = json.load(file)["tracking"]
+        if skipped and not tracking["at_target"]:
+            self.skipTest(f"this computer is too busy for a loop: {skipped[0]}")
+        self.assertTrue(tracking["at_target"], tracking)
+        self.assertEqual(log.descriptions[0].program, example)
+        self.assertEqual([(s.source, s.exit_code) for s in log.stops], [("driver", 0)])
+        self.assertEqual([f.text for f in log.faults if f.code.startswith(("sensor", "device", "output"))], [])
+        (left,) = log.outputs_left
+        self.assertEqual((left.role, bool(left.accepted)), ("driver", True))
+        self.assertLess(abs(left.voltage), 0.01)
+        self.assertIn("driver", {s.role for s in log.statistics})
+        self.assertIn('role = "driver"', log.descriptions[0].config_text)
+
+    def keeps_its_promises(self, example):
+        table = self.check(self.config(example)).stdout
+        self.assertRegex(table, r"(?m)^18 kept, 0 broken, 0 not tried$")
+        self.assertRegex(table, r"(?m)^device silent .* kept .*device_silent")
+        self.assertRegex(table, r"(?m)^device gives NaN .* kept .*sensor_p1")
+        self.assertRegex(table, r"(?m)^read-back lies .* kept .*output_differs")
+
+
 class OwnDriverTest(OwnDriverCase):
     # Tests that hydro-launch runs each example with its simulated device. The arm ends at its target, as hydro-log summary judges it, through
-    # scales, inputs and outputs of the example, and the log shows the driver's run.
+    # scales, inputs and outputs of the example, and the log shows the driver's run. (own_driver_terminal_test.py runs serial_board.)
     def test_arm_reaches_its_target(self):
-        for example in ("udp_box", "cia402", "serial_board"):
+        for example in ("udp_box", "cia402"):
             with self.subTest(example):
-                log_file = self.path(example + ".lcmlog")
-                launch = self.launch(self.config(example), "--set", "limits.stale_input_s=0.3", "--log", log_file)
-                code = launch.wait(60)
-                skipped = re.search(r"\d+ of \d+ ticks \(.*\) were skipped", launch.stderr)
-                if skipped and code != 0 and "device_silent" in launch.stderr:
-                    # A terminal's bytes wait for the kernel, whatever the priority of who reads them.
-                    self.skipTest(f"this computer is too busy for a device: {skipped[0]}")
-                self.assertEqual(code, 0, launch.report())
-                self.assertRegex(launch.stderr + launch.stdout, "stands for the device.*nothing real moves")
-                log = event_log.Log(log_file)
-                self.run_program("hydro-log", "summary", log_file, "--json", self.path("summary.json"), "--force")
-                with open(self.path("summary.json"), encoding="utf-8") as file:
-                    tracking = json.load(file)["tracking"]
-                if skipped and not tracking["at_target"]:
-                    self.skipTest(f"this computer is too busy for a loop: {skipped[0]}")
-                self.assertTrue(tracking["at_target"], tracking)
-                self.assertEqual(log.descriptions[0].program, example)
-                self.assertEqual([(s.source, s.exit_code) for s in log.stops], [("driver", 0)])
-                self.assertEqual([f.text for f in log.faults if f.code.startswith(("sensor", "device", "output"))], [])
-                (left,) = log.outputs_left
-                self.assertEqual((left.role, bool(left.accepted)), ("driver", True))
-                self.assertLess(abs(left.voltage), 0.01)
-                self.assertIn("driver", {s.role for s in log.statistics})
-                self.assertIn('role = "driver"', log.descriptions[0].config_text)
+                self.arrives(example)
 
     # Tests that each of them, and hydro-driver on the simulated board, keeps what docs/safety.md promises.
     def test_promises(self):
-        for example in ("udp_box", "cia402", "serial_board"):
+        for example in ("udp_box", "cia402"):
             with self.subTest(example):
-                table = self.check(self.config(example)).stdout
-                self.assertRegex(table, r"(?m)^18 kept, 0 broken, 0 not tried$")
-                self.assertRegex(table, r"(?m)^device silent .* kept .*device_silent")
-                self.assertRegex(table, r"(?m)^device gives NaN .* kept .*sensor_p1")
-                self.assertRegex(table, r"(?m)^read-back lies .* kept .*output_differs")
+                self.keeps_its_promises(example)
 
     def test_promises_of_ours(self):
         os.environ["LD_PRELOAD"] = board.LIBRARY
