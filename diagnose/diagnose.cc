@@ -9,6 +9,7 @@
 
 #include "base/maths/spread.h"
 #include "base/number_text.h"
+#include "base/word_list.h"
 #include "diagnose/evidence/clocks.h"
 #include "diagnose/fit/prior.h"
 #include "diagnose/prove/blind_changes.h"
@@ -150,6 +151,20 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
   return changes;
 }
 
+// Which effects of the catalogue were not looked for because nobody asked for them. "" where there are none.
+std::string RemarkOnRequests(const model::ModelDescription& given, const std::vector<Change>& changes,
+                             const std::vector<const RunData*>& runs) {
+  std::vector<std::string> left;
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
+    const bool tried = std::any_of(changes.begin(), changes.end(),
+                                   [&](const Change& change) { return change.effect == info.id; });
+    if (!tried && !EffectChanges(given, {info.id}, runs).empty()) left.push_back(info.id);
+  }
+  if (left.empty()) return "";
+  return "Not looked for, because few machines have them; --effects with a list of them does: " +
+         Enumerated(left);
+}
+
 // The base values that may be refitted: not what all torques are measured by, which no run shows.
 std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std::vector<std::string>& names,
                                 const std::vector<const RunData*>& runs) {
@@ -274,6 +289,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   diagnosis.remarks.insert(diagnosis.remarks.end(), layouts.begin(), layouts.end());
   const std::vector<std::string> limits = LimitRemarks(model.parameters, context.runs);
   diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
+  if (IsOpen(diagnosis.verdict) && options.effects.empty()) {
+    const std::string requests = RemarkOnRequests(model, context.changes, context.runs);
+    if (!requests.empty()) diagnosis.remarks.push_back(requests);
+  }
   AddChecked(checked, &diagnosis);
   if (!diagnosis.choices.empty()) diagnosis.remarks.push_back(ChoiceRemark(diagnosis.choices));
   if (limit.struck()) diagnosis.sentence = limit.Remark() + diagnosis.sentence;

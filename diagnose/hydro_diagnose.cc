@@ -356,10 +356,13 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   for (const runs::MeasuredRun& run : runs) CheckUsable(run);
   // Nothing is printed before all of the input was found usable.
   std::string text;
+  bool asks = false;  // a line of a checklist asks whether something is wrong
   for (const runs::MeasuredRun& run : runs) {
     text += "checklist of run " + Printable(run.name) + "\n";
-    for (const ChecklistLine& line : Checklist(model, run, request.si))
+    for (const ChecklistLine& line : Checklist(model, run, request.si)) {
       text += Printable(Written(line)) + "\n";
+      asks |= line.state == ChecklistLine::State::kLook && line.text.ends_with('?');
+    }
     text += "\n";
   }
   const RecordingReport report = ReportOnRecordings(model, std::move(runs), request.jobs);
@@ -369,7 +372,7 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   if (!report.unjudged.empty()) {
     text += "whether these recordings are right cannot be told from them and this model\n";
   } else if (report.wrong.empty()) {
-    text += std::string("nothing ") + (report.doubtful ? "that is surely " : "") +
+    text += std::string("nothing ") + (report.doubtful || asks ? "that is surely " : "") +
             "wrong was found in the recordings, as far as the model as given predicts them: a rig that "
             "differs much from it can hide a mistake\n";
   }

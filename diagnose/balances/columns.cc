@@ -247,8 +247,10 @@ ColumnTable Make(ColumnSetup* setup, const std::vector<RunMotion>& runs, const s
 ColumnTable MakeColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
                         const std::vector<BaseSeries>& base, int jobs, const ColumnTable* again) {
   if (setup->only_always) return Make(setup, runs, base, jobs, again, {AddBaseColumns, AddNuisanceColumns});
-  return Make(setup, runs, base, jobs, again,
-              {AddBaseColumns, AddEffectColumns, AddNuisanceColumns, AddClosureColumns, AddValueColumns});
+  std::vector<void (*)(ColumnMaker*)> kinds = {AddBaseColumns, AddEffectColumns, AddNuisanceColumns};
+  if (setup->curves) kinds.push_back(AddClosureColumns);
+  kinds.push_back(AddValueColumns);
+  return Make(setup, runs, base, jobs, again, kinds);
 }
 
 ColumnTable MakeEffectColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,

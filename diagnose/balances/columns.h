@@ -65,6 +65,7 @@ struct ColumnSetup {
   std::vector<EffectVariant> variants;
   std::vector<int> periods;  // numbers of periods per turn at which waves are tried
   bool only_always = false;  // no columns but those of every hypothesis
+  bool curves = true;        // whether closures are among the columns
   BalanceSizes sizes;
   std::vector<double> units;  // by column, set when the column is first made: the unit of an amount of 1
 };

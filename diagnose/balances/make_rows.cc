@@ -230,6 +230,7 @@ ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const
   setup_.given = given;
   setup_.allowed = options.allowed;
   setup_.only_always = options.only_always;
+  setup_.curves = options.curves;
   setup_.per_run = options.per_run;
   setup_.hold_effects = options.hold_effects;
   setup_.variants = VariantsOf(options.changes, SizesOf(given, runs));

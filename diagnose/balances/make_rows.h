@@ -19,6 +19,7 @@ struct ScanOptions {
   std::vector<Change> changes;             // effects that may be named
   std::vector<std::string> inverted = {};  // sensors whose readings have the wrong sign
   bool only_always = false;                // no columns but those of every hypothesis
+  bool curves = true;                      // whether closures are among the columns
   double highest = 120;                    // Hz: such machines and their sensors are not faster
   double tile = 0;                         // s; 0: chosen from the runs' lengths
   // Base parameters of any kind ("J") that may differ by run. Friction, charge pressure and load always may.

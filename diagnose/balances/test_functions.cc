@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 namespace hydro::diagnose {
 
@@ -85,9 +86,11 @@ std::vector<TestFunctions> TestFunctionsOf(const std::vector<uint8_t>& mask, dou
     const int most =
         std::max(1, std::min(static_cast<int>(2 * width * step * highest), static_cast<int>(width / 2.2)));
     std::vector<double> frequencies;
+    std::vector<bool> passed;
     for (int k = 0; k < most; ++k) {
       const double frequency = (k + 0.5) / (2 * width * step);
-      if (!IsHum(frequency)) frequencies.push_back(frequency);
+      passed.push_back(!IsHum(frequency));
+      if (passed.back()) frequencies.push_back(frequency);
     }
     if (frequencies.empty()) continue;
     TestFunctions here;
@@ -101,8 +104,13 @@ std::vector<TestFunctions> TestFunctionsOf(const std::vector<uint8_t>& mask, dou
       const double n = static_cast<double>(here.first + i);
       const double window =
           std::sqrt(2 / width) * Rise((n - tile.begin) / tile.rise) * Rise((tile.end - n) / tile.fall);
-      for (Eigen::Index k = 0; k < here.values.rows(); ++k) {
-        here.values(k, i) = window * std::cos(2 * pi * here.frequency[k] * step * (n - tile.begin));
+      // cos((k + 1/2) x) by recurrence: 2 cos(x) times the one before, less the one before that.
+      const double x = pi * (n - tile.begin) / width, twice = 2 * std::cos(x);
+      double now = std::cos(x / 2), before = now;
+      Eigen::Index row = 0;
+      for (int k = 0; k < most; ++k) {
+        if (passed[static_cast<size_t>(k)]) here.values(row++, i) = window * now;
+        before = std::exchange(now, twice * now - before);
       }
     }
     all.push_back(std::move(here));

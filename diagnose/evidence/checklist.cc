@@ -251,9 +251,9 @@ class RunChecklist {
     const std::string number = " (log odds " + ShortNumber(*gain, 2) + ")";
     if (std::abs(*gain) < ClearGain()) {
       Add(State::kLook, item,
-          *gain != 0                                 ? "not clear from this run" + number
-          : mistakes_.moves() && !mistakes_.Formed() ? "what was recorded of the run does not suffice to tell"
-                                                     : "the run moves too little to tell");
+          *gain != 0          ? "not clear from this run" + number
+          : mistakes_.moves() ? "what was recorded of the run does not suffice to tell"
+                              : "the run moves too little to tell");
     } else {
       Add(*gain < 0 ? State::kGood : State::kLook, item, (*gain < 0 ? good : turned) + number);
     }

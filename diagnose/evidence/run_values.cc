@@ -34,6 +34,7 @@ std::optional<RunValues> ValuesOfRuns(const model::ModelDescription& model,
   options.allowed = {base};
   options.per_run = {parameter.info.name};
   options.hold_effects = true;
+  options.curves = false;
   ScanRuns scan(model, runs, options);
   const Rows rows = scan.MakeRows({});
   if (rows.blocks.empty()) return std::nullopt;

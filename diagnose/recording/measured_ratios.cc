@@ -58,8 +58,8 @@ double Largest(const std::vector<double>& values) {
 std::string Cause(double factor) {
   constexpr double kNear = 0.1;
   const double turn = 2 * std::numbers::pi;
-  if (std::abs(factor * turn - 1) < kNear) return "D is per radian: is the model's per revolution?";
-  if (std::abs(factor / turn - 1) < kNear)
+  if (std::abs(factor / turn - 1) < kNear) return "D is per radian: is the model's per revolution?";
+  if (std::abs(factor * turn - 1) < kNear)
     return "is the model's D divided by 2 pi twice, or motor_speed in rev/s?";
   return factor > 0 ? "a bore, D, or the unit or scale of a speed?"
                     : "the arm goes the other way than the motor: the sign of one of them?";

@@ -10,6 +10,7 @@
 #include "diagnose/fit/closure.h"
 #include "diagnose/recording/noise_remarks.h"
 #include "diagnose/say/candidates.h"
+#include "diagnose/say/error_growth.h"
 #include "diagnose/say/found.h"
 #include "diagnose/say/gaps.h"
 #include "diagnose/say/judgement.h"
@@ -87,6 +88,16 @@ void ShowWhere(const ProofContext& context, Diagnosis* d) {
   d->missing = std::move(located.missing);
 }
 
+// A motion that multiplies errors by more than this is unstable at times: friction only makes them less.
+constexpr double kMultiplies = 10;
+
+// The growth of errors in the model as given, over all runs.
+double GrowthOver(const ProofContext& context) {
+  std::vector<const RunData*> all = context.runs;
+  all.insert(all.end(), context.held_out.begin(), context.held_out.end());
+  return ErrorGrowth(context.given, all, context.jobs);
+}
+
 }  // namespace
 
 Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Proposed& proposed) {
@@ -101,7 +112,8 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   DescribeGaps(context, whole, &d);
   d.horizons = HorizonGaps(context, proof);
   d.noise_shown = NoiseShown(context.runs);
-  d.verdict = VerdictOn(d, proof, proposed.scores, JudgedBy(context.runs));
+  const double growth = proof.best == proof.given ? GrowthOver(context) : 1;
+  d.verdict = VerdictOn(d, proof, proposed.scores, JudgedBy(context.runs, growth));
   if (d.verdict == Verdict::kNothingMissing && proof.best != proof.given) {
     // Other values that are not clearly different stay as given.
     Proof nothing = proof;
@@ -110,6 +122,9 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   }
   HearBothWitnesses(proof, &d);
   if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, d.fit, &d.remarks);
+  if (d.verdict == Verdict::kNothingMissing && growth > kMultiplies)
+    d.remarks.push_back("An error of a start grows " + ShortNumber(growth, 2) +
+                        " times over a whole run, so windows judge, and whole runs show only what is larger");
   d.candidates = CandidatesOf(context, proof, d, proposed.scores);
   RemarkOnUsersOwn(&d);
   d.curves = CurvesOf(context, proof, whole);

@@ -64,10 +64,10 @@ bool IsGapClosed(const Diagnosis& d, const Proof& proof, const RunsJudged& runs)
   if (near == nullptr) return whole(kWholeRunsAtTheNoise);
   // "Nothing is missing" has to hold over whole runs too, where the model can follow them, because slow
   // effects show in no window. But an axis that integrates and friction that lets go a little later carry the
-  // smallest error on.
+  // smallest error on, and an unstable motion multiplies it.
   const bool found = !proof.Found().changes.empty() || !proof.Found().Free().empty();
   const bool follows = std::isfinite(d.held_out.after + d.fit.after);
-  const double left = std::max(kWholeRunsAtTheNoise, MayBeLeft(runs.longest / near->seconds));
+  const double left = std::max(kWholeRunsAtTheNoise, MayBeLeft(runs.longest / near->seconds * runs.growth));
   if (!found && follows && !whole(left)) return false;
   return OpenHorizon(d, *near, runs.exact_sensors) == nullptr;
 }
@@ -152,8 +152,8 @@ bool IsWorse(const BeforeAfter& gap) {
   return std::isfinite(gap.before) && std::isfinite(gap.after) && gap.after > kNoticeable * gap.before;
 }
 
-RunsJudged JudgedBy(const std::vector<const RunData*>& runs) {
-  RunsJudged judged{ExactSensors(runs), SampleInterval(runs), 0};
+RunsJudged JudgedBy(const std::vector<const RunData*>& runs, double growth) {
+  RunsJudged judged{ExactSensors(runs), SampleInterval(runs), 0, growth};
   for (const RunData* run : runs) judged.longest = std::max(judged.longest, run->duration());
   return judged;
 }

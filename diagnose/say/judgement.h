@@ -25,8 +25,9 @@ struct RunsJudged {
   bool exact_sensors = false;  // ExactSensors()
   double sample = 0;           // s, between samples
   double longest = 0;          // s, of a run
+  double growth = 1;           // ErrorGrowth() over whole runs
 };
-RunsJudged JudgedBy(const std::vector<const RunData*>& runs);
+RunsJudged JudgedBy(const std::vector<const RunData*>& runs, double growth);
 
 // `d` already has the effects, parameters, closures and gaps. All that was found was proved. The verdict is
 // "named" where only noise is left, "tied" where an alternative does as well, and "partly" where more than
@@ -35,7 +36,7 @@ RunsJudged JudgedBy(const std::vector<const RunData*>& runs);
 // what they are tied with, has a probability of one in twenty, by weight or by `scores` (the balances' scores
 // of sets, best first), unless other values do as well too. The same holds for times of at most two samples
 // for which only simulation speaks, because recorders cause such times. "Nothing missing" allows whole runs
-// to leave more than windows, in proportion to their length.
+// to leave more than windows, in proportion to their length and to the growth of errors in them.
 Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
                   const RunsJudged& runs);
 

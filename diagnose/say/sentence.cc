@@ -49,13 +49,16 @@ std::string NoneAlone(const std::vector<std::string>& names) {
 
 // Values that the runs show by themselves, then the names of the others: they may do most of the work.
 std::vector<std::string> ParametersOf(const Diagnosis& d) {
-  std::vector<std::string> parameters, others;
+  std::vector<std::string> clear, within, others;  // within: the interval holds the value as given
   for (const ChangedParameter& changed : d.parameters) {
     const std::string now = ShortNumber(changed.fitted.value), before = ShortNumber(changed.model);
     const bool alone = !changed.resting && changed.fitted.shown && now != before;
-    if (alone) parameters.push_back(changed.fitted.name + " = " + now + " instead of " + before);
+    const bool holds = changed.fitted.low <= changed.model && changed.model <= changed.fitted.high;
+    if (alone)
+      (holds ? within : clear).push_back(changed.fitted.name + " = " + now + " instead of " + before);
     if (!alone && (changed.resting || !changed.fitted.shown)) others.push_back(changed.fitted.name);
   }
+  std::vector<std::string> parameters = clear.empty() && d.effects.empty() ? within : clear;
   if (parameters.empty()) others.insert(others.begin(), d.unsure.begin(), d.unsure.end());
   if (d.effects.empty() && !others.empty()) parameters.push_back(NoneAlone(others));
   return parameters;

@@ -69,6 +69,20 @@ TEST(BareMotor, IntervalsIncludeWhatTorquesAreMeasuredBy) {
   }
 }
 
+// Tests that a pendulum which goes over the top, where the smallest error of its start ends on the other
+// side, lacks nothing where its model is true: its whole runs can be predicted by no model.
+TEST(BareMotor, AnUnstableMotionLacksNothing) {
+  model::ModelDescription pendulum = Bare();
+  pendulum.parameters.J *= 20;
+  pendulum.parameters.b *= 0.2;
+  pendulum.parameters.T_s *= 0.2;
+  pendulum.effects = {{"load.gravity", {{"mgl", 12}, {"phase", 0}}, {}}};
+  const diagnose::Diagnosis d = diagnose::Diagnose(pendulum, RunsOf(pendulum, 4, 6), {}, {}, {});
+  EXPECT_GT(d.held_out.before, 100) << "the runs are too easy";
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
+  EXPECT_THAT(d.remarks, Contains(HasSubstr("An error of a start grows ")));
+}
+
 double Fitted(const diagnose::Diagnosis& d, double model::Parameters::*member) {
   return d.model.parameters.*member;
 }
@@ -126,6 +140,8 @@ TEST(BareMotor, AnUnknownLoadOverTheAngle) {
   EXPECT_THAT(d.effects, IsEmpty()) << d.sentence;
   ASSERT_EQ(d.closures.size(), 1u) << d.sentence;
   EXPECT_EQ(d.closures[0].against.front(), "motor_angle");
+  EXPECT_THAT(d.remarks, Contains(::testing::AllOf(HasSubstr("Not looked for"), HasSubstr("motor.back_emf"),
+                                                   Not(HasSubstr("accumulator.gas")))));
 }
 
 // Tests that the motor's torque, which measures all others, stays as given, and other friction is found.

@@ -82,9 +82,12 @@ TEST(MeasuredRatios, OfMotorAndArm) {
               ElementsAre(AllOf(HasSubstr("c/D = 110."), HasSubstr("the model 100 (1.1 times as much"),
                                 HasSubstr("a bore"))));
   const double turn = 2 * std::numbers::pi;
-  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(100 * turn, 100 * turn)}), ElementsAre(HasSubstr("in rev/s?")));
-  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(100 / turn, 100 / turn)}),
-              ElementsAre(HasSubstr("per revolution?")));
+  // A displacement per revolution is 2 pi times as large as one per radian, so the motor turns 2 pi times as
+  // far as the model says. A speed in revolutions a second is as much too small.
+  model::ModelDescription per_revolution = Cylinder();
+  per_revolution.parameters.D *= turn;
+  EXPECT_THAT(RatioRemarks(per_revolution, {Moved(100, 100)}), ElementsAre(HasSubstr("per revolution?")));
+  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(100 / turn, 100 / turn)}), ElementsAre(HasSubstr("in rev/s?")));
   EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(-100, -100)}), ElementsAre(HasSubstr("the other way")));
   EXPECT_THAT(
       RatioRemarks(Cylinder(), {Moved(108, 92)}),

@@ -56,6 +56,24 @@ TEST(Sentence, ValuesThatExplainAPart) {
   EXPECT_THAT(Said(d), StartsWith("Other values explain part of the gap: b = 0.03 instead of 0.02;"));
 }
 
+// Tests that a value whose interval holds the given one is not said to be another beside one that clearly is.
+TEST(Sentence, ValuesThatMayBeAsGivenAreNoFinding) {
+  diagnose::Diagnosis d = With(Verdict::kParameters);
+  d.effects.clear();
+  diagnose::ChangedParameter b, range;
+  b.fitted = {"b", 0.03, 0.028, 0.032, "", true};
+  b.model = 0.02;
+  range.fitted = {"range", 300028, 250000, 350000, "", true};
+  range.model = 300000;
+  d.parameters = {range, b};
+  EXPECT_THAT(Said(d), HasSubstr("b = 0.03 instead of 0.02"));
+  EXPECT_THAT(Said(d), Not(HasSubstr("range")));
+  d.parameters = {range};
+  EXPECT_THAT(Said(d), HasSubstr("range = 300028 instead of 300000"));
+  d.effects = With(Verdict::kNamed).effects;
+  EXPECT_THAT(Said(d), Not(HasSubstr("range")));
+}
+
 // Tests that of values that the runs do not show, the names are said; and that a value with an interval that
 // shows nothing is not said to be another.
 TEST(Sentence, ValuesThatTheRunsDoNotShow) {
@@ -92,10 +110,10 @@ TEST(Sentence, NoImprovementIsClaimed) {
 TEST(Sentence, ValuesThatRestOnWhatIsKnown) {
   diagnose::Diagnosis d = With(Verdict::kPartly);
   diagnose::ChangedParameter b, J, beta;
-  b.fitted.name = "b";
+  b.fitted = {"b", 1, 0.9, 1.1, "", true};
   J.fitted.name = "J";
   beta.fitted.name = "beta";
-  b.fitted.value = J.fitted.value = 1;
+  J.fitted.value = 1;
   J.resting = true;
   // Nor is a value of which a reader sees no change.
   beta.model = 100000;
