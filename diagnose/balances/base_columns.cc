@@ -59,9 +59,9 @@ void AddGivenEffects(ColumnMaker* maker) {
     const double value = all[i].In(&copy);
     const double deviation = DeviationOf(given, all[i]);
     if (deviation == 0 || (value == 0 && !phase)) continue;
-    const int column =
-        maker->Add({id + "." + all[i].Label(), "", phase ? deviation : deviation / std::abs(value), false},
-                   {.kind = ColumnMeaning::Kind::kGiven, .base = i});
+    ScanColumn known{id + "." + all[i].Label(), "", phase ? deviation : deviation / std::abs(value), false};
+    if (!phase && ParameterOf(id, all[i].name).min >= 0) known.value = known.name;
+    const int column = maker->Add(known, {.kind = ColumnMeaning::Kind::kGiven, .base = i});
     maker->works.back().push_back([maker, column, i, value, phase](size_t run) {
       const std::vector<BalanceSeries> found =
           DerivativesOf(maker->setup->given, maker->Motion(run), {{model::Unknown::Kind::kEffect, i}});
@@ -105,6 +105,7 @@ void AddBaseColumns(ColumnMaker* maker) {
     const double value = given.parameters.*base.member;
     ScanColumn column{base.info.name, "",
                       value != 0 ? model::UncertaintyOf(given, i) : kFromNothing / kUsualPart, false};
+    if (value > 0 && base.info.min >= 0) column.value = column.name;
     ColumnMeaning meaning{.kind = ColumnMeaning::Kind::kBase, .base = i, .unit = value != 0 ? 1.0 : 0.0};
     const int place = maker->Add(column, meaning);
     if (base.member == &Parameters::T_pmax) {
@@ -137,15 +138,13 @@ void AddValueColumns(ColumnMaker* maker) {
     const ColumnMeaning meaning = maker->table.meaning[i];
     const ScanColumn column = maker->table.columns[i];
     AddAskedRuns(maker, static_cast<int>(i));
-    if (meaning.kind == ColumnMeaning::Kind::kGiven)
-      maker->AddAlias(
-          {"wide." + column.name, "value." + column.name, std::max(kFarOff, 3 * column.sd), false}, meaning,
-          static_cast<int>(i), -1);
+    ScanColumn wide{"wide." + column.name, "value." + column.name, std::max(kFarOff, 3 * column.sd), false};
+    wide.value = column.value;
+    if (meaning.kind == ColumnMeaning::Kind::kGiven) maker->AddAlias(wide, meaning, static_cast<int>(i), -1);
     if (meaning.kind == ColumnMeaning::Kind::kBase && meaning.run < 0) {
       const bool zero = maker->given().*BaseParameters()[meaning.base].member == 0;
-      const double wide = std::max(kFarOff, 3 * column.sd) * (zero ? 3 : 1);
-      maker->AddAlias({"wide." + column.name, "value." + column.name, wide, false}, meaning,
-                      static_cast<int>(i), -1);
+      wide.sd *= zero ? 3 : 1;
+      maker->AddAlias(wide, meaning, static_cast<int>(i), -1);
     }
     if (meaning.run < 0 || !column.set.empty() || meaning.kind == ColumnMeaning::Kind::kOther) continue;
     const std::string name = column.name.substr(0, column.name.find('['));

@@ -31,6 +31,9 @@ struct ScanColumn {
   bool positive = false;  // the amount cannot be negative
   // The upper bound of the amount.
   double most = std::numeric_limits<double>::infinity();
+  // The parameter whose relative deviation the amount is. It is above 0, so the deviations of all its columns
+  // together cannot reach -1. Empty: none.
+  std::string value = {};
 };
 
 // All rows of one balance of one run.

@@ -83,6 +83,8 @@ class SetEvidence {
                    Eigen::MatrixXd* normal, Eigen::VectorXd* right) const;
   Eigen::VectorXd NoiseFactors(const Eigen::VectorXd& passed) const;
   Eigen::VectorXd LogLikelihoods(const Solution& solution) const;  // by group
+  double PriceOfFalls(const Solution& solution) const;
+  double DeviationAt(const Solution& solution, Eigen::Index at) const;
   double LogOf(const Solution& solution) const;
 
   std::shared_ptr<const Grams> grams_;

@@ -21,6 +21,11 @@
 namespace hydro::diagnose {
 namespace {
 
+// A model need not have a name.
+std::string TitleOf(const Diagnosis& diagnosis) {
+  return diagnosis.model.name.empty() ? "Gap report" : "Gap report: " + diagnosis.model.name;
+}
+
 // A section; "" without content. On paper it stays whole where it fits on a page.
 std::string Section(const std::string& heading, const std::string& content, const char* kind = "part") {
   return content.empty() ? ""
@@ -76,8 +81,7 @@ std::string Head(const Diagnosis& diagnosis) {
   return "<h1>" + page::TypesetHtml(first) + "</h1>\n<p class=\"verdict" + (open ? " unexplained" : "") +
          "\"><span class=\"badge\">" + verdict + "</span>\n" + page::TypesetHtml(rest) +
          (rest.empty() || gap.empty() ? "" : " ") + page::EscapeMarkup(gap) + "</p>\n<p class=\"meta\">" +
-         page::EscapeMarkup("Gap report: " + diagnosis.model.name) + ". " + page::EscapeMarkup(meta) +
-         "</p>\n";
+         page::EscapeMarkup(TitleOf(diagnosis)) + ". " + page::EscapeMarkup(meta) + "</p>\n";
 }
 
 std::string GapTable(const Diagnosis& diagnosis, bool si) {
@@ -172,7 +176,7 @@ std::string Remarks(const Diagnosis& diagnosis) {
 std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model_toml) {
   const Diagnosis diagnosis = si ? InSi(given) : given;
   return page::HtmlPage(
-      "Gap report: " + diagnosis.model.name,
+      TitleOf(diagnosis),
       Head(diagnosis) + Section("What was found", WhatWasFound(diagnosis, si)) +
           Section("What the balances measure of the machine", MeasuredSection(diagnosis)) +
           Section("How sure that is", HowSure(diagnosis)) +

@@ -10,6 +10,7 @@
 #include "diagnose/fit/closure.h"
 #include "diagnose/recording/noise_remarks.h"
 #include "diagnose/say/candidates.h"
+#include "diagnose/say/common_factor.h"
 #include "diagnose/say/error_growth.h"
 #include "diagnose/say/found.h"
 #include "diagnose/say/gaps.h"
@@ -140,6 +141,11 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   if (context.held_out.empty()) d.choices = ChoicesWithoutEach(proof);
   d.compared = GapToCompare(d, proof);
   d.sentence = Sentence(d, d.compared) + ClosureSentence(d.closures);
+  const std::string common = RemarkOnCommonFactor(context, proof, d);
+  if (!common.empty()) {
+    d.remarks.insert(d.remarks.begin(), common);
+    d.sentence += " " + common + ".";
+  }
   return d;
 }
 

@@ -108,7 +108,7 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
       proof.told.ok() ? Unseen(proof.told) : std::vector<bool>(free.size(), false);
   const bool limited = ExceedsTorqueLimit(context, context.given.parameters) ||
                        ExceedsTorqueLimit(context, hypothesis.model.parameters);
-  std::vector<std::string> unsure, resting, not_shown;
+  std::vector<std::string> unsure, resting;
   for (const OwnNumber& number : OwnNumbers(context.given, hypothesis.model)) {
     const auto it = std::find_if(free.begin(), free.end(),
                                  [&](const FreeParameter& one) { return one.name == number.name; });
@@ -118,7 +118,7 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
     if (held && LooksTheSame(number)) continue;
     if ((!held && unseen[place]) || (number.name == "T_pmax" && !limited)) {
       KeepAsGiven(number, &d->model);
-      not_shown.push_back(number.name);
+      d->not_shown.push_back(number.name);
       continue;
     }
     const Interval interval = held ? Interval{kUnknown, kUnknown} : intervals[place];
@@ -137,9 +137,9 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
     d->parameters.back().resting = !held && rests[place];
     if (d->parameters.back().resting) resting.push_back(number.name);
   }
-  if (!not_shown.empty()) {
-    d->remarks.push_back("These runs do not show " + Enumerated(not_shown) +
-                         (not_shown.size() == 1
+  if (!d->not_shown.empty()) {
+    d->remarks.push_back("These runs do not show " + Enumerated(d->not_shown) +
+                         (d->not_shown.size() == 1
                               ? ": nothing in them depends on it, and it stays as given"
                               : ": nothing in them depends on these, and they stay as given"));
   }

@@ -83,6 +83,19 @@ TEST(BareMotor, AnUnstableMotionLacksNothing) {
   EXPECT_THAT(d.remarks, Contains(HasSubstr("An error of a start grows ")));
 }
 
+// Tests that values which are all off by one factor are said to be one value's mistake as well: that of k_1.
+TEST(BareMotor, OneFactorMayBeTheTorqueConstants) {
+  model::ModelDescription truth = Bare(), given = Bare();
+  given.parameters.k_1 *= 0.8;
+  diagnose::Diagnosis d = diagnose::Diagnose(given, RunsOf(truth, 4, 3), {}, {}, {});
+  EXPECT_THAT(d.sentence,
+              HasSubstr("are all 0.8 times what the model has. k_1, by which they are measured, may be"))
+      << d.sentence;
+  truth.parameters.b *= 2;
+  d = diagnose::Diagnose(Bare(), RunsOf(truth, 4, 3), {}, {}, {});
+  EXPECT_THAT(d.sentence, Not(HasSubstr("by which they are measured")));
+}
+
 double Fitted(const diagnose::Diagnosis& d, double model::Parameters::*member) {
   return d.model.parameters.*member;
 }

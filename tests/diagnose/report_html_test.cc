@@ -81,6 +81,15 @@ TEST(ReportHtml, WhatIsNotShown) {
       << text;
 }
 
+// Tests the title of a model that has no name.
+TEST(ReportHtml, ModelWithoutAName) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis();
+  diagnosis.model.name.clear();
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_TRUE(Has(page, "Gap report. "));
+  EXPECT_FALSE(Has(page, "Gap report: "));
+}
+
 // Tests that the whole diagnosis is there: verdict, gaps, effects, parameters, places, ties, pictures,
 // ranking, the next experiment.
 TEST(ReportHtml, Complete) {

@@ -23,6 +23,7 @@ EXEMPT = {
     "diagnose/evidence/normal_equations.h": "inside of SetEvidence, which set_evidence_test compares with a dense reference",
     "diagnose/evidence/set_solution.h": "inside of SetEvidence",
     "diagnose/evidence/grams.h": "inside of SetEvidence",
+    "diagnose/say/common_factor.h": "a part of the sentence, which bare_motor_test reads",
     "diagnose/say/found_values.h": "a part of what found.h describes, which found_test and diagnose_test read as a whole",
     "diagnose/prove/whole_runs.h": "a stage of prove.h: gap_closed_test and own_effect_test read what it finds",
     "diagnose/prove/proof_sets.h": "what prove.h chooses among: whole_proofs_test reads what comes of it",

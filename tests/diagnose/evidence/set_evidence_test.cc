@@ -147,6 +147,21 @@ TEST(SetEvidenceTest, PositiveAmounts) {
   }
 }
 
+// Tests that a value falls as rarely by a factor as it rises by it: its logarithm is normal, and what the
+// linear form asks too little is asked in addition. Nothing is given back where it rises.
+TEST(SetEvidenceTest, AValueThatFallsToATenth) {
+  for (const double moved : {-0.9, 0.9}) {
+    Rows rows = MakeRows({.truth = {{"b", moved}}});
+    const double linear = SetEvidence(rows).Log({});
+    const double amount = AmountOf(rows, SetEvidence(rows).Fit({}), "b");
+    ASSERT_NEAR(amount, moved, 0.05);
+    rows.columns[static_cast<size_t>(ColumnOf(rows, "b"))].value = "b";
+    const double factor = std::log1p(amount), sd = 0.3;
+    const double price = moved < 0 ? (factor * factor - amount * amount) / (2 * sd * sd) : 0;
+    EXPECT_NEAR(linear - SetEvidence(rows).Log({}), price, 1e-9);
+  }
+}
+
 // Rows of a shaft whose acceleration is seen with noise; all that y is made of is that noise.
 Rows NoisyAcceleration(bool told) {
   Rows rows = MakeRows({.rows = 500});
