@@ -189,8 +189,11 @@ class AuthenticationTest(stack.TestCase):
 
     # Tests that a recording is refused, in a later run and in the same run, with the seals or without.
     def test_recording(self):
-        recorder, _ = self.recorder("wire.lcmlog")
-        self.wait_until(lambda: os.path.exists(self.path("wire.lcmlog")), "the recorder is on the network")
+        recorder, wire = self.recorder("wire.lcmlog")
+        # It opens its file before it listens.
+        probe = self.sender()
+        self.wait_until(lambda: probe.send("PROBE", b"") or (os.path.exists(self.path("wire.lcmlog")) and wire.new_events()),
+                        "the recorder is on the network")
         launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "1.5", *self.keyed,
                              *PATIENT, "--log", self.path("plain.lcmlog"))
         self.assertEqual(launch.wait(), 0, launch.report())
