@@ -102,7 +102,6 @@ class OwnDriverCase(stack.TestCase):
     def check(self, *arguments, expect=0):
         return self.run_program("hydro-driver-check", *arguments, expect=expect, timeout=150)
 
-
     def arrives(self, example):
         """hydro-launch runs the example with its simulated device: the arm ends at its target, and the log shows the driver's run."""
         log_file = self.path(example + ".lcmlog")
