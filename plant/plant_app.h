@@ -29,7 +29,7 @@
 #include "plant/rig_messages.h"
 #include "plant/run_start.h"
 #include "plant/sibling_faults.h"
-#include "plant/tuning_desk.h"
+#include "plant/tuning_server.h"
 #include "plant/watches.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
@@ -58,7 +58,7 @@ class PlantApp {
   // failed.
   int Run();
 
-  // Repeats changes that were decided in another run, at the same ticks (TuningDesk). Call it before Run().
+  // Repeats changes that were decided in another run, at the same ticks (TuningServer). Call it before Run().
   void FollowTuning(std::vector<tuned_settings_t> decided) { tuning_.Follow(std::move(decided)); }
 
   // The run in steps. PlantPace takes them for Run(); a program that paces several rigs at once (sim/limb/)
@@ -138,7 +138,7 @@ class PlantApp {
   Rig& rig_;
   process::Participant participant_;
   OutputSafety safety_;
-  TuningDesk tuning_;
+  TuningServer tuning_;
   LoggerWatch logger_watch_;
   SiblingFaults siblings_;
   RunStart start_;

@@ -1,12 +1,12 @@
-// TuningDesk's way from a proposal to its effect: which controllers must be able to act by it, at which tick
-// it acts, and what the plant itself does then.
+// TuningServer's way from a proposal to its effect: which controllers must be able to act by it, at which
+// tick it acts, and what the plant itself does then.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/input_error.h"
-#include "plant/tuning_desk.h"
+#include "plant/tuning_server.h"
 
 namespace hydro::plant {
 namespace {
@@ -23,7 +23,7 @@ constexpr size_t kMostControllers = 16;
 }  // namespace
 
 // Names the controllers that cannot act by the proposal or have not answered yet; empty when all can.
-std::string TuningDesk::NotReady(bool* impossible) const {
+std::string TuningServer::NotReady(bool* impossible) const {
   const int64_t version = pending_->version->message.version;
   for (const auto& [key, controller] : controllers_) {
     if (participant_.clock().Now() - controller.heard > kAlive) continue;  // it has left
@@ -37,7 +37,7 @@ std::string TuningDesk::NotReady(bool* impossible) const {
 }
 
 // Both loops act on multiples of the position loop's interval, or at their next tick after such a multiple.
-int64_t TuningDesk::TickOfEffect() const {
+int64_t TuningServer::TickOfEffect() const {
   const int64_t interval = configured_->position_interval_ticks;
   const auto lead =
       static_cast<int64_t>(std::ceil(kLead_s * configured_->plant.rate_hz * configured_->time.speed));
@@ -45,7 +45,7 @@ int64_t TuningDesk::TickOfEffect() const {
   return (soonest + interval - 1) / interval * interval;
 }
 
-void TuningDesk::AwaitControllers() {
+void TuningServer::AwaitControllers() {
   bool impossible = false;
   const std::string not_ready = NotReady(&impossible);
   if (not_ready.empty()) {
@@ -56,7 +56,7 @@ void TuningDesk::AwaitControllers() {
   }
 }
 
-void TuningDesk::Decide() {
+void TuningServer::Decide() {
   tuned_settings_t& message = pending_->version->message;
   message.acts_at = TickOfEffect();
   if (message.reference_from < 0) message.reference_from = message.acts_at;
@@ -64,9 +64,9 @@ void TuningDesk::Decide() {
   Accept(message, pending_->text);
 }
 
-bool TuningDesk::IsYoung() const { return !begun_ || participant_.clock().Now() - *begun_ < kYoung; }
+bool TuningServer::IsYoung() const { return !begun_ || participant_.clock().Now() - *begun_ < kYoung; }
 
-void TuningDesk::OnTickWithWork(int64_t tick) {
+void TuningServer::OnTickWithWork(int64_t tick) {
   if (!begun_) begun_ = participant_.clock().Now();
   if (!followed_.empty()) FollowAt(tick);
   if (!pending_ || !pending_->version) return;
@@ -84,7 +84,7 @@ void TuningDesk::OnTickWithWork(int64_t tick) {
   TakeEffect(std::move(version));
 }
 
-void TuningDesk::TakeEffect(Version version) {
+void TuningServer::TakeEffect(Version version) {
   in_force_ = std::move(version);
   if (tuning::Read(in_force_.message, configured_->model.description.parameters.k_2, &values_).empty()) {
     hooks_.apply(values_);
@@ -93,7 +93,7 @@ void TuningDesk::TakeEffect(Version version) {
 }
 
 // The controllers hear of the change in the tick before.
-void TuningDesk::FollowAt(int64_t tick) {
+void TuningServer::FollowAt(int64_t tick) {
   while (!followed_.empty() && followed_.back().acts_at - 1 <= tick) {
     tuned_settings_t& next = followed_.back();
     if (next.acts_at > tick) {
@@ -106,7 +106,7 @@ void TuningDesk::FollowAt(int64_t tick) {
   }
 }
 
-void TuningDesk::OnStatus(const tuning_status_t& status) {
+void TuningServer::OnStatus(const tuning_status_t& status) {
   if (status.plant != participant_.session() || participant_.Refuses(status.session)) return;
   if (status.role != "pressure_ctrl" && status.role != "position_ctrl") return;
   const auto now = participant_.clock().Now();
@@ -123,7 +123,7 @@ void TuningDesk::OnStatus(const tuning_status_t& status) {
 }
 
 // A user's own controller may know nothing of live tuning; values that concern it cannot be changed then.
-std::string TuningDesk::WhoIsMissing(const tuning_request_t& request) const {
+std::string TuningServer::WhoIsMissing(const tuning_request_t& request) const {
   if (request.kind != tuning_request_t::SET) return "";
   std::vector<std::string> changes;
   try {

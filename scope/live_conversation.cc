@@ -121,15 +121,15 @@ void LiveConversation::Take(const LiveRequest& request) {
     case Op::kGhostSync:
       return ReplyTo(request.id)(context_.ghost.Sync(request.run));
     case Op::kStop:
-      return context_.desk.Stop(ReplyTo(request.id));
+      return context_.actions.Stop(ReplyTo(request.id));
     case Op::kRearm:
-      return context_.desk.Rearm(ReplyTo(request.id));
+      return context_.actions.Rearm(ReplyTo(request.id));
     case Op::kRearmForecast:
-      return context_.desk.ForecastRearm(ReplyTo(request.id));
+      return context_.actions.ForecastRearm(ReplyTo(request.id));
     case Op::kSet:
-      return context_.desk.Set(request.run, request.entries, ReplyTo(request.id));
+      return context_.actions.Set(request.run, request.entries, ReplyTo(request.id));
     case Op::kUndo:
-      return context_.desk.Undo(request.run, ReplyTo(request.id));
+      return context_.actions.Undo(request.run, ReplyTo(request.id));
   }
 }
 
@@ -149,7 +149,7 @@ bool LiveConversation::Next(Message* message) {
   if (!greeted_) {
     greeted_ = true;
     revision_ = context_.runs.revision();
-    return Text(HelloMessage(context_.runs.All(), context_.desk.control()), message);
+    return Text(HelloMessage(context_.runs.All(), context_.actions.control()), message);
   }
   return NextReply(message) || NextEvent(message) || NextCapture(message) || NextStatus(message) ||
          NextFrame(message);
@@ -252,7 +252,7 @@ bool LiveConversation::NextStatus(Message* message) {
   if (dropped_.Now(now)) {
     if (std::string text = Dropped(); !text.empty()) return Text(std::move(text), message);
   }
-  for (const auto& [run, tuning] : context_.desk.tunings()) {
+  for (const auto& [run, tuning] : context_.actions.tunings()) {
     std::string& sent = tunings_[run];
     if (tuning->message() == sent) continue;
     sent = tuning->message();

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scope/live_request.h"
-#include "scope/operator_desk.h"
+#include "scope/operator_actions.h"
 #include "scope/run_table.h"
 #include "scope/signals/trigger.h"
 #include "scope/signals/view.h"
@@ -31,7 +31,7 @@ class GhostSwitch {
 // What conversations share. Everything in it outlives them.
 struct LiveContext {
   RunTable& runs;
-  OperatorDesk& desk;
+  OperatorActions& actions;
   GhostSwitch& ghost;
   // Wall time since the last state of a live run, s; negative: none has come.
   std::function<double(uint32_t run)> silent_s;

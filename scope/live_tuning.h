@@ -10,7 +10,7 @@
 #include "bus/bus.h"
 #include "bus/channels.h"
 #include "bus/clock.h"
-#include "scope/operator_desk.h"
+#include "scope/operator_actions.h"
 #include "tune/live/tuning_client.h"
 
 namespace hydro::scope {

@@ -20,7 +20,7 @@
 #include "base/text_file.h"
 #include "process/stack_bus.h"
 #include "process/stop_signal.h"
-#include "scope/ghost_desk.h"
+#include "scope/ghost_runner.h"
 #include "scope/live_feed.h"
 #include "scope/live_tuning.h"
 #include "scope/scope_site.h"
@@ -120,11 +120,11 @@ class ScopeApp {
     DiagnoseJobs jobs(work.folder(), post);
     std::map<uint32_t, Tuning*> tunings;
     for (const auto& [run, tuning] : tunings_) tunings[run] = tuning.get();
-    OperatorDesk desk(config_, section_.control, post, std::move(tunings));
-    GhostDesk ghost(&runs_);
+    OperatorActions actions(config_, section_.control, post, std::move(tunings));
+    GhostRunner ghost(&runs_);
     LiveContext context{
         .runs = runs_,
-        .desk = desk,
+        .actions = actions,
         .ghost = ghost,
         .silent_s = [this](uint32_t run) { return feed_ == nullptr ? -1 : feed_->silent_s(run); },
         .now = [] { return std::chrono::steady_clock::now(); },
@@ -205,7 +205,7 @@ class ScopeApp {
     std::fflush(stdout);
   }
 
-  std::chrono::microseconds Turn(int clients, GhostDesk* ghost) {
+  std::chrono::microseconds Turn(int clients, GhostRunner* ghost) {
     if (process::StopSignal() != 0) return std::chrono::microseconds(-1);
     if (feed_ != nullptr) feed_->Poll();
     for (const auto& [run, tuning] : tunings_) tuning->Poll();

@@ -137,7 +137,7 @@ std::string ScopeSite::Status() const {
   std::string runs;
   for (const Run* run : context_.runs.All()) runs += (runs.empty() ? "" : ",") + RunJson(*run);
   return "{\"program\":" + TextJson("hydro-scope " + settings::ProgramVersion()) +
-         ",\"control\":" + (context_.desk.control() ? "true" : "false") + ",\"runs\":[" + runs +
+         ",\"control\":" + (context_.actions.control() ? "true" : "false") + ",\"runs\":[" + runs +
          "],\"memory_bytes\":" + std::to_string(context_.runs.memory()) +
          (more_status ? "," + more_status() : std::string()) + "}\n";
 }

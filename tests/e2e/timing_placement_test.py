@@ -71,20 +71,20 @@ class PlacementTest(stack.TestCase):
             sections.append(section)
         pids = self.start_with(sections)
         self.assertEqual(set(pids), set(wanted))
-        asides = {}
+        preparations = {}
         for role, (cpu, priority, lock) in wanted.items():
             for thread in self.threads(pids[role]):
                 self.assertEqual(os.sched_getaffinity(thread), {cpu}, role)
                 with open(f"/proc/{pids[role]}/task/{thread}/comm", encoding="utf-8") as file:
-                    aside = file.read().strip() == "aside"  # what the plant checks beside its loop keeps no loop waiting
-                asides[role] = asides.get(role, 0) + aside
-                wished = 0 if aside else priority
+                    preparing = file.read().strip() == "preparation"  # what the plant checks beside its loop keeps no loop waiting
+                preparations[role] = preparations.get(role, 0) + preparing
+                wished = 0 if preparing else priority
                 self.assertEqual(os.sched_getscheduler(thread), os.SCHED_FIFO if wished else os.SCHED_OTHER, role)
                 self.assertEqual(os.sched_getparam(thread).sched_priority, wished, role)
             # By default, memory is locked where there is a priority; the key can change that.
             is_locked = locked_kb(pids[role]) > 0
             self.assertEqual(is_locked, lock != "false" and (priority > 0 or lock == "true"), role)
-        self.assertEqual(asides, {"plant": 1, "pressure_ctrl": 0, "position_ctrl": 0, "logger": 0})
+        self.assertEqual(preparations, {"plant": 1, "pressure_ctrl": 0, "position_ctrl": 0, "logger": 0})
         self.assertEqual(self.launched.stderr, "")
 
     # Tests that without these keys the kernel's own choice is kept.

@@ -53,11 +53,11 @@ void Scope(const uint8_t* data, size_t size) {
     run.ticks.Append(tick * 1e-3, row.data());
   }
   run.events.Add({0, 0.05, "fault", "plant", "code", "text"});
-  scope::OperatorDesk desk(nullptr, false, [](const std::function<void()>& work) { work(); }, {});
+  scope::OperatorActions actions(nullptr, false, [](const std::function<void()>& work) { work(); }, {});
   NoGhost ghost;
   auto now = std::chrono::steady_clock::time_point() + std::chrono::hours(1);
   const scope::LiveContext context{.runs = runs,
-                                   .desk = desk,
+                                   .actions = actions,
                                    .ghost = ghost,
                                    .silent_s = [](uint32_t) { return -1.0; },
                                    .now = [&now] { return now += std::chrono::milliseconds(20); },

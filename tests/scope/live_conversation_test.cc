@@ -28,7 +28,7 @@ class LiveConversationTest : public ::testing::Test {
   }
   std::unique_ptr<LiveConversation> Converse() {
     return std::make_unique<LiveConversation>(LiveContext{.runs = runs_,
-                                                          .desk = desk_,
+                                                          .actions = actions_,
                                                           .ghost = ghost_,
                                                           .silent_s = [](uint32_t) { return 0.0; },
                                                           .now = [this] { return now_; },
@@ -58,7 +58,7 @@ class LiveConversationTest : public ::testing::Test {
   }
 
   RunTable runs_;
-  OperatorDesk desk_{nullptr, false, [](const std::function<void()>& work) { work(); }, {}};
+  OperatorActions actions_{nullptr, false, [](const std::function<void()>& work) { work(); }, {}};
   NoGhost ghost_;
   std::chrono::steady_clock::time_point now_{};
   int64_t frames_ = 0;

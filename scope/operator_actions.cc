@@ -1,4 +1,4 @@
-#include "scope/operator_desk.h"
+#include "scope/operator_actions.h"
 
 #include <utility>
 
@@ -9,18 +9,18 @@
 
 namespace hydro::scope {
 
-OperatorDesk::OperatorDesk(std::shared_ptr<const settings::StackConfig> config, bool control,
-                           std::function<void(std::function<void()>)> post,
-                           std::map<uint32_t, Tuning*> tunings)
+OperatorActions::OperatorActions(std::shared_ptr<const settings::StackConfig> config, bool control,
+                                 std::function<void(std::function<void()>)> post,
+                                 std::map<uint32_t, Tuning*> tunings)
     : config_(std::move(config)), control_(control), post_(std::move(post)), tunings_(std::move(tunings)) {}
 
-OperatorDesk::~OperatorDesk() {
+OperatorActions::~OperatorActions() {
   for (Errand* errand : {&stop_, &rearm_, &forecast_}) {
     if (errand->thread.joinable()) errand->thread.join();
   }
 }
 
-void OperatorDesk::Run(Errand* errand, Done done, std::function<launch::OperatorResult()> work) {
+void OperatorActions::Run(Errand* errand, Done done, std::function<launch::OperatorResult()> work) {
   errand->waiting.push_back(std::move(done));
   if (errand->waiting.size() > 1) return;
   if (errand->thread.joinable()) errand->thread.join();  // the thread has ended: it posted its result last
@@ -39,12 +39,12 @@ void OperatorDesk::Run(Errand* errand, Done done, std::function<launch::Operator
   });
 }
 
-void OperatorDesk::Stop(Done done) {
+void OperatorActions::Stop(Done done) {
   if (config_ == nullptr) return done({false, "there is no stack here: a log is shown", {}});
   Run(&stop_, std::move(done), [config = config_] { return launch::StopStack(*config, launch::kScopePage); });
 }
 
-bool OperatorDesk::Refused(const Done& done) const {
+bool OperatorActions::Refused(const Done& done) const {
   if (config_ == nullptr) {
     done({false, "there is no stack here: a log is shown", {}});
   } else if (!control_) {
@@ -55,7 +55,7 @@ bool OperatorDesk::Refused(const Done& done) const {
   return true;
 }
 
-void OperatorDesk::Rearm(Done done) {
+void OperatorActions::Rearm(Done done) {
   if (Refused(done)) return;
   Run(&rearm_, std::move(done), [config = config_] {
     const auto bus = process::OpenStackBus(config->bus);
@@ -63,7 +63,7 @@ void OperatorDesk::Rearm(Done done) {
   });
 }
 
-void OperatorDesk::ForecastRearm(Done done) {
+void OperatorActions::ForecastRearm(Done done) {
   if (Refused(done)) return;
   Run(&forecast_, std::move(done), [config = config_] {
     const auto bus = process::OpenStackBus(config->bus);
@@ -71,7 +71,7 @@ void OperatorDesk::ForecastRearm(Done done) {
   });
 }
 
-Tuning* OperatorDesk::TuningOf(uint32_t run, const Done& done) const {
+Tuning* OperatorActions::TuningOf(uint32_t run, const Done& done) const {
   if (Refused(done)) return nullptr;
   const auto tuning = tunings_.find(run);
   if (tuning != tunings_.end()) return tuning->second;
@@ -79,11 +79,11 @@ Tuning* OperatorDesk::TuningOf(uint32_t run, const Done& done) const {
   return nullptr;
 }
 
-void OperatorDesk::Set(uint32_t run, const std::vector<std::string>& entries, Done done) {
+void OperatorActions::Set(uint32_t run, const std::vector<std::string>& entries, Done done) {
   if (Tuning* const tuning = TuningOf(run, done)) tuning->Set(entries, std::move(done));
 }
 
-void OperatorDesk::Undo(uint32_t run, Done done) {
+void OperatorActions::Undo(uint32_t run, Done done) {
   if (Tuning* const tuning = TuningOf(run, done)) tuning->Undo(std::move(done));
 }
 

@@ -11,13 +11,13 @@
 
 namespace hydro::scope {
 
-class GhostDesk : public GhostSwitch {
+class GhostRunner : public GhostSwitch {
  public:
   // A ghost beside a live run has the model of the configuration with which the scope was started
   // (Run::listened), no matter which model the plant reports: a simulated plant names its own model, and
   // beside that model there is no gap. A log's ghost has the model that the log names.
-  explicit GhostDesk(RunTable* runs);
-  ~GhostDesk() override;
+  explicit GhostRunner(RunTable* runs);
+  ~GhostRunner() override;
 
   // Works for any run whose model is known, for at most 4 at a time. A live ghost begins with the newest 10
   // s.

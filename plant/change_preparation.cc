@@ -1,4 +1,4 @@
-#include "plant/aside.h"
+#include "plant/change_preparation.h"
 
 #include <pthread.h>
 
@@ -9,7 +9,7 @@
 
 namespace hydro::plant {
 
-class Aside::Thread {
+class ChangePreparation::Thread {
  public:
   Thread() : thread_([this](const std::stop_token& stop) { Run(stop); }) {}
   ~Thread() {
@@ -32,7 +32,7 @@ class Aside::Thread {
 
  private:
   void Run(const std::stop_token& stop) {
-    pthread_setname_np(pthread_self(), "aside");
+    pthread_setname_np(pthread_self(), "preparation");
     const sched_param ordinary{};  // this thread was started by a real-time thread
     pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
     while (!stop.stop_requested()) {
@@ -54,10 +54,10 @@ class Aside::Thread {
   std::jthread thread_;  // last: it uses the others
 };
 
-Aside::Aside(bool thread) : thread_(thread ? std::make_unique<Thread>() : nullptr) {}
-Aside::~Aside() = default;
+ChangePreparation::ChangePreparation(bool thread) : thread_(thread ? std::make_unique<Thread>() : nullptr) {}
+ChangePreparation::~ChangePreparation() = default;
 
-void Aside::Begin(Work work) {
+void ChangePreparation::Begin(Work work) {
   busy_ = true;
   if (thread_) {
     thread_->Begin(std::move(work));
@@ -66,7 +66,7 @@ void Aside::Begin(Work work) {
   }
 }
 
-std::optional<tuning::PreparedChange> Aside::Take() {
+std::optional<tuning::PreparedChange> ChangePreparation::Take() {
   if (!busy_) return std::nullopt;
   std::optional<tuning::PreparedChange> result =
       thread_ ? thread_->Take() : std::exchange(result_, std::nullopt);

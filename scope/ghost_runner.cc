@@ -1,4 +1,4 @@
-#include "scope/ghost_desk.h"
+#include "scope/ghost_runner.h"
 
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -29,7 +29,7 @@ constexpr double kMostBehind = 2;  // s of plant time; a ghost further behind le
 
 // A thread with a ghost. One batch goes in, and one comes out. The server's side never waits for the mutex,
 // because the thread may have lost the processor while it holds it.
-class GhostDesk::Worker {
+class GhostRunner::Worker {
  public:
   struct Result {
     double time;
@@ -101,7 +101,7 @@ class GhostDesk::Worker {
   std::thread thread_;  // last, because it uses all of the above
 };
 
-struct GhostDesk::Beside {
+struct GhostRunner::Beside {
   const Run* run = nullptr;
   std::unique_ptr<Worker> worker;
   double resync_s = 0;
@@ -112,14 +112,14 @@ struct GhostDesk::Beside {
   std::string problem;
 };
 
-GhostDesk::GhostDesk(RunTable* runs) : runs_(*runs) {}
-GhostDesk::~GhostDesk() = default;
+GhostRunner::GhostRunner(RunTable* runs) : runs_(*runs) {}
+GhostRunner::~GhostRunner() = default;
 
-std::shared_ptr<const settings::StackConfig> GhostDesk::ConfigFor(const Run& run) const {
+std::shared_ptr<const settings::StackConfig> GhostRunner::ConfigFor(const Run& run) const {
   return run.listened == nullptr ? run.config : run.listened;
 }
 
-Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
+Outcome GhostRunner::Switch(uint32_t id, bool on, double resync_s) {
   Run* const run = runs_.Find(id);
   if (run == nullptr)
     return {false, "run: found " + std::to_string(id) + ", allowed is one that is open", {}};
@@ -156,14 +156,14 @@ Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
   return {true, "the ghost is on: " + config->model.description.name, {}};
 }
 
-Outcome GhostDesk::Sync(uint32_t run) {
+Outcome GhostRunner::Sync(uint32_t run) {
   const auto ghost = ghosts_.find(run);
   if (ghost == ghosts_.end()) return {false, "there is no ghost beside run " + std::to_string(run), {}};
   ghost->second->worker->Sync();
   return {true, "the ghost begins anew", {}};
 }
 
-void GhostDesk::Collect(Run& run, Beside& beside) {
+void GhostRunner::Collect(Run& run, Beside& beside) {
   std::string problem = beside.problem;
   const bool was_empty = run.ghost.empty();
   const bool had_next = !beside.next.empty();
@@ -181,7 +181,7 @@ void GhostDesk::Collect(Run& run, Beside& beside) {
   }
 }
 
-void GhostDesk::Feed(Run& run, Beside& beside) {
+void GhostRunner::Feed(Run& run, Beside& beside) {
   if (!beside.next.empty()) return;  // the thread is still busy with the batch before this one
   const History& ticks = run.ticks;
   if (beside.fed < ticks.begin()) {
@@ -215,7 +215,7 @@ void GhostDesk::Feed(Run& run, Beside& beside) {
   }
 }
 
-void GhostDesk::Poll() {
+void GhostRunner::Poll() {
   for (auto ghost = ghosts_.begin(); ghost != ghosts_.end();) {
     Run* const run = runs_.Find(ghost->first);
     Beside& beside = *ghost->second;

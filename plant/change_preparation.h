@@ -1,5 +1,5 @@
-// Does work that takes longer than a loop may wait: on a thread of its own, at ordinary priority, one piece
-// at a time.
+// Prepares a change of values, which takes longer than a loop may wait: on a thread of its own, at ordinary
+// priority, one change at a time.
 #pragma once
 
 #include <functional>
@@ -10,14 +10,14 @@
 
 namespace hydro::plant {
 
-class Aside {
+class ChangePreparation {
  public:
   using Work = std::function<tuning::PreparedChange()>;
 
   // Without a `thread`, Begin() does the work at once: on simulated time, nothing may depend on how long a
   // thread takes.
-  explicit Aside(bool thread);
-  ~Aside();
+  explicit ChangePreparation(bool thread);
+  ~ChangePreparation();
 
   // Call it only when no other work is under way.
   void Begin(Work work);

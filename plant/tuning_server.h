@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "plant/aside.h"
+#include "plant/change_preparation.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
 #include "tune/live/change_check.h"
@@ -30,7 +30,7 @@
 
 namespace hydro::plant {
 
-class TuningDesk {
+class TuningServer {
  public:
   // `apply` is what the plant itself does with new values. `held` returns whether the voltage is held at zero
   // until a re-arm.
@@ -40,8 +40,8 @@ class TuningDesk {
   };
 
   // Subscribes; `participant` must outlive this object and the bus.
-  TuningDesk(process::Participant& participant, const settings::StackConfig& config, bool simulated_rig,
-             Hooks hooks);
+  TuningServer(process::Participant& participant, const settings::StackConfig& config, bool simulated_rig,
+               Hooks hooks);
 
   // Repeats changes that were decided in another run (from its log): they take effect at the same ticks.
   // `decided` is in the order of ticks.
@@ -57,7 +57,9 @@ class TuningDesk {
   void Poll(bus::Clock::TimePoint now) {
     if (IsDue(now)) PollDue(now);
   }
-  bool IsDue(bus::Clock::TimePoint now) const { return pending_ || now >= next_report_ || aside_.busy(); }
+  bool IsDue(bus::Clock::TimePoint now) const {
+    return pending_ || now >= next_report_ || preparation_.busy();
+  }
 
   // Whether a change is being made. Until it is in force or refused, nothing is re-armed: the change may
   // loosen a limit because the output is held.
@@ -109,7 +111,7 @@ class TuningDesk {
   const std::shared_ptr<const settings::StackConfig> configured_;
   const bool simulated_rig_;
   const Hooks hooks_;
-  Aside aside_;
+  ChangePreparation preparation_;
   tuning::TunedValues values_;  // in force
   Version in_force_;
   std::vector<Version> before_;  // earlier versions, newest last, for UNDO

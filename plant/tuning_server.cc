@@ -1,4 +1,4 @@
-#include "plant/tuning_desk.h"
+#include "plant/tuning_server.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -22,15 +22,15 @@ constexpr size_t kMostText = 1 << 16;  // bytes of a request
 
 }  // namespace
 
-TuningDesk::TuningDesk(process::Participant& participant, const settings::StackConfig& config,
-                       bool simulated_rig, Hooks hooks)
+TuningServer::TuningServer(process::Participant& participant, const settings::StackConfig& config,
+                           bool simulated_rig, Hooks hooks)
     : participant_(participant),
       configured_(std::make_shared<settings::StackConfig>(config)),
       simulated_rig_(simulated_rig),
       hooks_(std::move(hooks)),
       // Where many processes share one thread, none of them may depend on how long another thread takes,
       // either.
-      aside_(!participant.clock().simulated() && participant.bus().process() == nullptr),
+      preparation_(!participant.clock().simulated() && participant.bus().process() == nullptr),
       values_(tuning::ValuesOf(config)),
       in_force_{configured_, {}} {
   in_force_.message.version = in_force_.message.acts_at = in_force_.message.reference_from = 0;
@@ -48,12 +48,12 @@ TuningDesk::TuningDesk(process::Participant& participant, const settings::StackC
   });
 }
 
-void TuningDesk::Follow(std::vector<tuned_settings_t> decided) {
+void TuningServer::Follow(std::vector<tuned_settings_t> decided) {
   followed_ = std::move(decided);
   std::reverse(followed_.begin(), followed_.end());
 }
 
-void TuningDesk::OnRequest(const tuning_request_t& request) {
+void TuningServer::OnRequest(const tuning_request_t& request) {
   if (request.addressee != participant_.session() || participant_.Refuses(request.session)) return;
   if (participant_.state() != process_status_t::RUNNING) return;
   if (pending_ && pending_->request.session == request.session &&
@@ -67,27 +67,29 @@ void TuningDesk::OnRequest(const tuning_request_t& request) {
     participant_.bus().Publish(participant_.channels().Of<tuning_answer_t>(), answered->second);
     return;
   }
-  if (pending_ || aside_.busy()) return;  // one change at a time: the other program asks again
+  if (pending_ || preparation_.busy()) return;  // one change at a time: the other program asks again
   // A program that asks before the loops have said that they take part asks again, too.
   if (IsYoung() && !WhoIsMissing(request).empty()) return;
   Begin(request);
 }
 
-void TuningDesk::Begin(const tuning_request_t& request) {
+void TuningServer::Begin(const tuning_request_t& request) {
   pending_ = Pending{};
   pending_->request = request;
   if (const std::string why = WhyNot(request); !why.empty()) return Refuse(why);
   const bool undo = request.kind == tuning_request_t::UNDO;
   const tuning::Situation situation{.held = hooks_.held(), .simulated = simulated_rig_, .undo = undo};
   if (undo) {
-    aside_.Begin([configured = configured_, in_force = in_force_.config, next = before_.back().config,
-                  situation] { return tuning::PrepareChange(*configured, *in_force, next, situation); });
+    preparation_.Begin(
+        [configured = configured_, in_force = in_force_.config, next = before_.back().config, situation] {
+          return tuning::PrepareChange(*configured, *in_force, next, situation);
+        });
     return;
   }
   try {
     const std::vector<std::string> changes = tuning::ParseChanges(request.changes);
     if (const std::string missing = WhoIsMissing(request); !missing.empty()) return Refuse(missing);
-    aside_.Begin([configured = configured_, in_force = in_force_.config, changes, situation] {
+    preparation_.Begin([configured = configured_, in_force = in_force_.config, changes, situation] {
       return tuning::PrepareChange(*configured, *in_force, changes, situation);
     });
   } catch (const InputError& error) {
@@ -95,7 +97,7 @@ void TuningDesk::Begin(const tuning_request_t& request) {
   }
 }
 
-std::string TuningDesk::WhyNot(const tuning_request_t& request) const {
+std::string TuningServer::WhyNot(const tuning_request_t& request) const {
   const double rate = configured_->plant.rate_hz * configured_->time.speed;
   const bool realtime = configured_->time.mode == settings::TimeMode::kRealtime;
   const auto age = static_cast<double>(SaturatingDifference(participant_.tick(), request.tick));
@@ -109,7 +111,7 @@ std::string TuningDesk::WhyNot(const tuning_request_t& request) const {
   return before_.empty() ? "nothing to undo: the values are those of the configuration" : "";
 }
 
-void TuningDesk::Propose(tuning::PreparedChange change) {
+void TuningServer::Propose(tuning::PreparedChange change) {
   change.message.version = ++newest_version_;
   change.message.acts_at = -1;
   change.message.source = pending_->request.source;
@@ -126,16 +128,16 @@ void TuningDesk::Propose(tuning::PreparedChange change) {
   Publish(&pending_->version->message, tuned_settings_t::PROPOSED);
 }
 
-void TuningDesk::Refuse(const std::string& why) {
+void TuningServer::Refuse(const std::string& why) {
   Answer(false, in_force_.message.version, -1, why);
   pending_.reset();
 }
 
-void TuningDesk::Accept(const tuned_settings_t& settings, const std::string& text) {
+void TuningServer::Accept(const tuned_settings_t& settings, const std::string& text) {
   Answer(true, settings.version, settings.acts_at, text);
 }
 
-void TuningDesk::Answer(bool accepted, int64_t version, int64_t acts_at, const std::string& text) {
+void TuningServer::Answer(bool accepted, int64_t version, int64_t acts_at, const std::string& text) {
   const tuning_request_t& request = pending_->request;
   tuning_answer_t answer;
   answer.utime = participant_.clock().Utime();
@@ -158,9 +160,9 @@ void TuningDesk::Answer(bool accepted, int64_t version, int64_t acts_at, const s
   answers_[request.session] = std::move(answer);
 }
 
-void TuningDesk::PollDue(bus::Clock::TimePoint now) {
-  if (aside_.busy()) {
-    if (auto change = aside_.Take()) {
+void TuningServer::PollDue(bus::Clock::TimePoint now) {
+  if (preparation_.busy()) {
+    if (auto change = preparation_.Take()) {
       if (change->config == nullptr) {
         Refuse(change->text);
       } else if (change->nothing_differs && pending_->request.kind == tuning_request_t::SET) {
@@ -187,7 +189,7 @@ void TuningDesk::PollDue(bus::Clock::TimePoint now) {
 }
 
 // Makes no copy: this is published once a second, and the loop allocates no memory.
-void TuningDesk::Publish(tuned_settings_t* settings, int8_t stage) {
+void TuningServer::Publish(tuned_settings_t* settings, int8_t stage) {
   settings->utime = participant_.clock().Utime();
   settings->tick = participant_.tick();
   settings->session = participant_.session();

@@ -34,16 +34,16 @@ class Tuning {
   virtual const std::string& message() const = 0;
 };
 
-class OperatorDesk {
+class OperatorActions {
  public:
   // `post` runs work on the server's thread. `tunings` is by live run; nothing can be set in a run that has
   // none. Without `config` (a log is shown) there is no stack. For a limb, `config` is what its joints have
   // in common.
-  OperatorDesk(std::shared_ptr<const settings::StackConfig> config, bool control,
-               std::function<void(std::function<void()>)> post, std::map<uint32_t, Tuning*> tunings);
-  ~OperatorDesk();
-  OperatorDesk(const OperatorDesk&) = delete;
-  OperatorDesk& operator=(const OperatorDesk&) = delete;
+  OperatorActions(std::shared_ptr<const settings::StackConfig> config, bool control,
+                  std::function<void(std::function<void()>)> post, std::map<uint32_t, Tuning*> tunings);
+  ~OperatorActions();
+  OperatorActions(const OperatorActions&) = delete;
+  OperatorActions& operator=(const OperatorActions&) = delete;
 
   // Stops the stack as hydro-launch --stop does: every process that drives the motor is asked first. A stop
   // that is already under way answers all requests.
