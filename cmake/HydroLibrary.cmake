@@ -5,12 +5,8 @@
 # missing includes.
 option(HYDRO_PRECOMPILE "Precompile the standard library's headers" OFF)
 # These builds also compile a library's files in batches of 24, because most of the compile time goes into
-# reading the same headers and templates. Files are compiled alone if they share names in anonymous namespaces
-# with others in their batch.
+# reading the same headers and templates. So names in anonymous namespaces are unique within a library.
 option(HYDRO_UNITY "Compile each library's files in batches" OFF)
-set(hydro_alone_file ${CMAKE_CURRENT_LIST_DIR}/compiled_alone.txt)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${hydro_alone_file})
-file(STRINGS ${hydro_alone_file} HYDRO_COMPILED_ALONE REGEX "^[a-z]")
 # GCC 12 does not treat precompiled headers as system headers, and warns falsely about strings in its own (its
 # bug 105651).
 if(HYDRO_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -66,7 +62,7 @@ function(hydro_library name)
     set(flavour precompiled_computes)
   endif()
   hydro_use_precompiled(${name} hydro_${flavour})
-  hydro_compile_in_batches(${name} ${arg_SOURCES})
+  hydro_compile_in_batches(${name})
   if(arg_INSTALLED)
     if(NOT arg_OBJECTS)
       hydro_install_library(${name})
@@ -88,18 +84,9 @@ function(hydro_use_precompiled name other)
 endfunction()
 
 function(hydro_compile_in_batches name)
-  if(NOT HYDRO_UNITY)
-    return()
+  if(HYDRO_UNITY)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 24)
   endif()
-  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 24)
-  foreach(source ${ARGN})
-    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE path)
-    cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
-    cmake_path(GET path PARENT_PATH folder)
-    if(path IN_LIST HYDRO_COMPILED_ALONE OR "${folder}/" IN_LIST HYDRO_COMPILED_ALONE)
-      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    endif()
-  endforeach()
 endfunction()
 
 # hydro_install_headers(SOURCES...) installs the headers beside these sources of the current folder.

@@ -17,7 +17,7 @@ class Spring : public model::EffectOf<Spring> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = model::AddToCatalogue(
+[[maybe_unused]] const bool kSpringAdded = model::AddToCatalogue(
     {.info = {.id = "arm.spring",
               .summary = "a spring pulls the arm to its middle",
               .equation = "arm torque - stiffness alpha",

@@ -27,11 +27,10 @@ std::vector<bool> FreeStates(const diagnose::RunData& data) {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPi = std::numbers::pi;
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Half a second of a clamped run at 1 kHz: speed decaying from 50 rad/s, pressures from 120 and 140 psi.
-runs::MeasuredRun Clamped() {
+runs::MeasuredRun ClampedRun() {
   runs::MeasuredRun run;
   run.name = "step";
   run.file = "step.csv";
@@ -53,15 +52,16 @@ runs::MeasuredRun Clamped() {
 }
 
 runs::MeasuredRun WithArm(model::Shaft shaft) {
-  runs::MeasuredRun run = Clamped();
+  runs::MeasuredRun run = ClampedRun();
   run.shaft = shaft;
   run.arm_angle_rad = 0;
-  for (const double t : run.time) run.arm_angle.values.push_back(0.3 * std::sin(2 * kPi * (t - 1)));
+  for (const double t : run.time)
+    run.arm_angle.values.push_back(0.3 * std::sin(2 * std::numbers::pi * (t - 1)));
   return run;
 }
 
 std::string ErrorOf(const std::function<void(runs::MeasuredRun&)>& change,
-                    runs::MeasuredRun run = Clamped()) {
+                    runs::MeasuredRun run = ClampedRun()) {
   change(run);
   try {
     PrepareRun(run, testing::Table1());
@@ -74,7 +74,7 @@ std::string ErrorOf(const std::function<void(runs::MeasuredRun&)>& change,
 
 // Tests which signals of a clamped run are compared, which start it, and what is known of it.
 TEST(PrepareRun, Clamped) {
-  const RunData data = PrepareRun(Clamped(), testing::Table1());
+  const RunData data = PrepareRun(ClampedRun(), testing::Table1());
   EXPECT_EQ(data.name, "step");
   EXPECT_EQ(data.samples(), 500u);
   EXPECT_NEAR(data.duration(), 0.499, 1e-9);
@@ -179,7 +179,7 @@ TEST(PrepareRun, EachSideHasItsOwnStroke) {
   rod.effects = {{.id = "actuator.unequal_areas", .parameters = {{"difference", 0.3}}, .names = {}}};
   const double mean = rod.parameters.V_ms / rod.parameters.c;
   const auto refused = [&](double part) {
-    runs::MeasuredRun run = Clamped();
+    runs::MeasuredRun run = ClampedRun();
     run.arm_angle_rad = part * mean;
     try {
       PrepareRun(run, rod);
@@ -205,7 +205,7 @@ TEST(PrepareRun, EachSideHasItsOwnStroke) {
 TEST(PrepareRun, Free) {
   const RunData data = PrepareRun(WithArm(model::Shaft::kFree), testing::Table1());
   EXPECT_NE(data.Find(model::Channel::kArmAngle), nullptr);
-  EXPECT_NEAR(data.start[model::kArmSpeed], 0.3 * 2 * kPi, 0.01);
+  EXPECT_NEAR(data.start[model::kArmSpeed], 0.3 * 2 * std::numbers::pi, 0.01);
   EXPECT_THAT(FreeStates(data), ElementsAre(false, true, true, true, true, true));
 }
 
@@ -217,12 +217,12 @@ TEST(PrepareRun, Driven) {
   ASSERT_EQ(moved.stimulus.motion, moved.motion.get());
   EXPECT_TRUE(moved.motion->continuous());
   EXPECT_NEAR(moved.motion->Value(1.25), 0.3, 1e-4);
-  EXPECT_NEAR(moved.start[model::kArmSpeed], 0.3 * 2 * kPi, 0.02);
+  EXPECT_NEAR(moved.start[model::kArmSpeed], 0.3 * 2 * std::numbers::pi, 0.02);
 }
 
 // Tests that with the bypass open there is one pressure to start from.
 TEST(PrepareRun, Bypass) {
-  runs::MeasuredRun run = Clamped();
+  runs::MeasuredRun run = ClampedRun();
   run.bypass = true;
   const RunData data = PrepareRun(run, testing::Table1());
   EXPECT_EQ(data.start[model::kP1], data.start[model::kP2]);
@@ -232,7 +232,7 @@ TEST(PrepareRun, Bypass) {
 
 // Tests that unmeasured quantities start from measured ones: speed from the angle, pressures at p_3.
 TEST(PrepareRun, StartOfWhatIsNotMeasured) {
-  runs::MeasuredRun run = Clamped();
+  runs::MeasuredRun run = ClampedRun();
   run.motor_speed = {};
   run.p1 = run.p2 = {};
   for (const double t : run.time) run.motor_angle.values.push_back(3 + 20 * (t - 1));
@@ -261,7 +261,7 @@ TEST(PrepareRun, Refusals) {
   EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p1.values.assign(500, 7.0); }),
             "step.csv: line 2: p1: found 7 psi here and in every later row, allowed a signal that "
             "changes, or leave it out");
-  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p2.values.assign(500, kNan); }),
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p2.values.assign(500, kMissing); }),
             "step.csv: p2: found no value in any row, allowed 20 values or more, or leave the signal out");
   EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.motor_speed.values[3] = -2e5; }),
             "step.csv: line 5: motor_speed: found -200000 rad/s, allowed -100000 to 100000 with this model: "
@@ -284,7 +284,7 @@ TEST(PrepareRun, Refusals) {
 TEST(PrepareRun, LimitsFollowTheModelsUnits) {
   model::Parameters si = testing::Table1();
   si.beta *= 6894.757;
-  runs::MeasuredRun run = Clamped();
+  runs::MeasuredRun run = ClampedRun();
   for (double& p : run.p2.values) p *= 6894.757;
   EXPECT_NO_THROW(PrepareRun(run, si));
 }
@@ -317,7 +317,7 @@ TEST(PrepareRun, NoiseIsAboveZero) {
 // Tests that readings of a saturated sensor count as missing, and that those of a side resting on its one-way
 // valve in a run without noise, and a coarse reading of an angle at rest, do not.
 TEST(PrepareRun, Saturation) {
-  runs::MeasuredRun run = Clamped();
+  runs::MeasuredRun run = ClampedRun();
   size_t beyond = 0;
   for (double& p : run.p2.values) {
     if (p <= 400) continue;
@@ -331,7 +331,7 @@ TEST(PrepareRun, Saturation) {
   EXPECT_NEAR(data.Find(model::Channel::kP2)->noise, 1.5, 0.3);
   EXPECT_EQ(data.Find(model::Channel::kP1)->saturated, 0u);
 
-  runs::MeasuredRun quiet = Clamped();
+  runs::MeasuredRun quiet = ClampedRun();
   for (size_t i = 0; i < 500; ++i) {
     quiet.p1.values[i] = 100 + std::max(0.0, 300 * std::sin(0.02 * static_cast<double>(i)));
     quiet.motor_speed.values[i] = std::round(std::max(0.0, 20 * std::sin(0.02 * static_cast<double>(i))));
@@ -366,7 +366,7 @@ RateErrors ErrorsOfRate(const std::vector<double>& time, const std::vector<doubl
   const std::unique_ptr<trajectory::Trajectory> through =
       trajectory::MakePoints(steps, trajectory::Interpolation::kCubic);
   RateErrors errors;
-  const double w = 2 * kPi * frequency;
+  const double w = 2 * std::numbers::pi * frequency;
   for (double t = time[20]; t < time[time.size() - 20]; t += 0.37e-3) {
     const double rate = 0.4 * w * std::cos(w * t);
     errors.smooth = std::max(errors.smooth, std::abs(smooth->Rate(t) - rate));
@@ -378,11 +378,11 @@ RateErrors ErrorsOfRate(const std::vector<double>& time, const std::vector<doubl
 // Tests that the rate of a sine read by a 14-bit encoder is far better than that of cubics through the
 // readings.
 TEST(SmoothMotion, EncoderSine) {
-  const double q = 2 * kPi / 16384;
+  const double q = 2 * std::numbers::pi / 16384;
   std::vector<double> time, angle;
   for (size_t i = 0; i < 3000; ++i) {
     time.push_back(0.0005 * static_cast<double>(i));
-    angle.push_back(q * std::round(0.4 * std::sin(2 * kPi * 2 * time.back()) / q));
+    angle.push_back(q * std::round(0.4 * std::sin(2 * std::numbers::pi * 2 * time.back()) / q));
   }
   const RateErrors errors = ErrorsOfRate(time, angle, q / std::sqrt(12.0), 2);
   EXPECT_LT(errors.smooth, 0.1);  // of 5 rad/s
@@ -394,12 +394,12 @@ TEST(SmoothMotion, WithoutNoise) {
   std::vector<double> time, angle;
   for (size_t i = 0; i < 1000; ++i) {
     time.push_back(0.001 * static_cast<double>(i) + (i % 3 == 0 ? 3e-4 : 0));
-    angle.push_back(i % 10 == 4 ? kNan : 0.4 * std::sin(2 * kPi * 2 * time.back()));
+    angle.push_back(i % 10 == 4 ? kMissing : 0.4 * std::sin(2 * std::numbers::pi * 2 * time.back()));
   }
   const std::unique_ptr<trajectory::Trajectory> motion = SmoothMotion(time, angle, 8e-6, {}, 0);
   for (double t = 0.05; t < 0.95; t += 0.0007) {
-    EXPECT_NEAR(motion->Value(t), 0.4 * std::sin(4 * kPi * t), 3e-5);
-    EXPECT_NEAR(motion->Rate(t), 1.6 * kPi * std::cos(4 * kPi * t), 0.01);
+    EXPECT_NEAR(motion->Value(t), 0.4 * std::sin(4 * std::numbers::pi * t), 3e-5);
+    EXPECT_NEAR(motion->Rate(t), 1.6 * std::numbers::pi * std::cos(4 * std::numbers::pi * t), 0.01);
   }
   EXPECT_GE(motion->Max(), 0.39999);
   EXPECT_EQ(motion->Value(-1), motion->Value(time.front()));
@@ -413,13 +413,15 @@ TEST(SmoothMotion, MeasuredRate) {
   std::vector<double> time, angle, rate;
   for (size_t i = 0; i < 500; ++i) {
     time.push_back(0.02 * static_cast<double>(i));
-    angle.push_back(0.4 * std::sin(2 * kPi * 0.5 * time.back()) + 0.002 * normal(random));
-    rate.push_back(0.4 * kPi * std::cos(2 * kPi * 0.5 * time.back()) + 0.005 * normal(random));
+    angle.push_back(0.4 * std::sin(2 * std::numbers::pi * 0.5 * time.back()) + 0.002 * normal(random));
+    rate.push_back(0.4 * std::numbers::pi * std::cos(2 * std::numbers::pi * 0.5 * time.back()) +
+                   0.005 * normal(random));
   }
   const auto error = [&](const trajectory::Trajectory& motion) {
     double sum = 0;
     for (size_t i = 0; i + 1 < time.size(); ++i) {
-      sum += std::pow(motion.Rate(time[i]) - 0.4 * kPi * std::cos(kPi * time[i]), 2);
+      sum +=
+          std::pow(motion.Rate(time[i]) - 0.4 * std::numbers::pi * std::cos(std::numbers::pi * time[i]), 2);
     }
     return std::sqrt(sum / 500);
   };

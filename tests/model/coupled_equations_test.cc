@@ -14,7 +14,7 @@
 namespace hydro::model {
 namespace {
 
-constexpr double kTick = 1e-3;
+constexpr double kArmTick = 1e-3;
 constexpr int kTicks = 200;
 constexpr double kGravity = 386.09;
 constexpr double kPressure = 2000;
@@ -22,14 +22,14 @@ const ArmLink kUpper = {.mass = 0.06, .length = 22, .centre = 9, .inertia = 2.5}
 const ArmLink kLower = {.mass = 0.04, .length = 17, .centre = 8, .inertia = 1.1};
 constexpr std::array<double, 2> kStart = {0.3, -0.2};
 
-double Voltage(int joint, int tick) { return 6 + 2 * std::sin(0.25 * tick + 2 * joint); }
+double JointVoltage(int joint, int tick) { return 6 + 2 * std::sin(0.25 * tick + 2 * joint); }
 
 // Of each joint: theta', p1, p2, alpha, alpha'.
-using State = std::array<double, 10>;
+using JointStates = std::array<double, 10>;
 
-State Rates(const State& y, const std::array<double, 2>& voltage) {
+JointStates JointRates(const JointStates& y, const std::array<double, 2>& voltage) {
   const Parameters p = testing::Table1();
-  State rate{};
+  JointStates rate{};
   std::array<double, 2> torque{};
   for (size_t i = 0; i < 2; ++i) {
     const double w = y[5 * i], p1 = y[5 * i + 1], p2 = y[5 * i + 2], alpha = y[5 * i + 3],
@@ -61,22 +61,22 @@ State Rates(const State& y, const std::array<double, 2>& voltage) {
 }
 
 // Classical Runge-Kutta with steps so short that its error does not count.
-State IntegratedByHand() {
+JointStates IntegratedByHand() {
   constexpr int kSteps = 250;  // in a tick
-  constexpr double h = kTick / kSteps;
-  State y{};
+  constexpr double h = kArmTick / kSteps;
+  JointStates y{};
   for (size_t i = 0; i < 2; ++i) {
     y[5 * i + 1] = y[5 * i + 2] = kPressure;
     y[5 * i + 3] = kStart[i];
   }
-  const auto plus = [](State x, const State& by, double times) {
+  const auto plus = [](JointStates x, const JointStates& by, double times) {
     for (size_t i = 0; i < x.size(); ++i) x[i] += times * by[i];
     return x;
   };
   for (int k = 0; k < kTicks * kSteps; ++k) {
-    const std::array<double, 2> voltage = {Voltage(0, k / kSteps), Voltage(1, k / kSteps)};
-    const State k1 = Rates(y, voltage), k2 = Rates(plus(y, k1, h / 2), voltage),
-                k3 = Rates(plus(y, k2, h / 2), voltage), k4 = Rates(plus(y, k3, h), voltage);
+    const std::array<double, 2> voltage = {JointVoltage(0, k / kSteps), JointVoltage(1, k / kSteps)};
+    const JointStates k1 = JointRates(y, voltage), k2 = JointRates(plus(y, k1, h / 2), voltage),
+                      k3 = JointRates(plus(y, k2, h / 2), voltage), k4 = JointRates(plus(y, k3, h), voltage);
     for (size_t i = 0; i < y.size(); ++i) y[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
     for (const size_t i : {0UL, 5UL}) {  // the mode in which this is valid
       EXPECT_TRUE(y[i] > 0 && y[i + 1] > 100 && y[i + 2] > 100) << "at " << (k + 1) * h << " s";
@@ -85,7 +85,7 @@ State IntegratedByHand() {
   return y;
 }
 
-State Coupled(const CoupledArmOptions& options, double tolerance) {
+JointStates Coupled(const CoupledArmOptions& options, double tolerance) {
   std::vector<ArmJoint> joints;
   for (const double angle : kStart) {
     joints.push_back({testing::Table1Model(),
@@ -93,9 +93,9 @@ State Coupled(const CoupledArmOptions& options, double tolerance) {
   }
   CoupledArm arm({.gravity = kGravity, .links = {kUpper, kLower}}, joints, options);
   for (int tick = 0; tick < kTicks; ++tick) {
-    arm.Advance(std::array<double, 2>{Voltage(0, tick), Voltage(1, tick)}, (tick + 1) * kTick);
+    arm.Advance(std::array<double, 2>{JointVoltage(0, tick), JointVoltage(1, tick)}, (tick + 1) * kArmTick);
   }
-  State y;
+  JointStates y;
   for (int i = 0; i < 2; ++i) {
     const Measurement m = arm.Measure(i);
     const std::array<double, 5> own = {m.motor_speed, m.p1, m.p2, m.arm_angle, m.arm_speed};
@@ -105,15 +105,15 @@ State Coupled(const CoupledArmOptions& options, double tolerance) {
 }
 
 // The largest difference of one of the five quantities.
-double Worst(const State& a, const State& b, size_t which) {
+double Worst(const JointStates& a, const JointStates& b, size_t which) {
   return std::max(std::abs(a[which] - b[which]), std::abs(a[which + 5] - b[which + 5]));
 }
 
 // Tests that at the default accuracy pressures agree within 0.1 psi and angles within 1e-6 rad, well below
 // any sensor's noise, while the arm moves by some hundredths of a radian.
 TEST(CoupledEquations, AgreeAtTheDefaultAccuracy) {
-  const State by_hand = IntegratedByHand();
-  const State coupled = Coupled({}, ArmJoint().options.relative_tolerance);
+  const JointStates by_hand = IntegratedByHand();
+  const JointStates coupled = Coupled({}, ArmJoint().options.relative_tolerance);
   EXPECT_LT(Worst(coupled, by_hand, 0), 1e-3);  // rad/s of the motor
   EXPECT_LT(Worst(coupled, by_hand, 1), 0.1);
   EXPECT_LT(Worst(coupled, by_hand, 2), 0.1);
@@ -126,10 +126,10 @@ TEST(CoupledEquations, AgreeAtTheDefaultAccuracy) {
 // Tests that in smooth motion the error falls with the fourth power of the exchanges' distance, to what the
 // actuators' tolerance leaves.
 TEST(CoupledEquations, ConvergeWithTheFourthOrder) {
-  const State by_hand = IntegratedByHand();
+  const JointStates by_hand = IntegratedByHand();
   const auto error = [&](int steps_in_a_tick) {
-    const State y =
-        Coupled({.longest_step = 1.00001 * kTick / steps_in_a_tick, .steps_per_radian = 0.1}, 1e-10);
+    const JointStates y =
+        Coupled({.longest_step = 1.00001 * kArmTick / steps_in_a_tick, .steps_per_radian = 0.1}, 1e-10);
     return Worst(y, by_hand, 1) + Worst(y, by_hand, 2);
   };
   const double coarse = error(4), middle = error(8), fine = error(16);

@@ -16,13 +16,13 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr char kTable[] = "t,u,n,a,x,p\n0,1,0,0,0,1\n500,2,60,90,10,2\n";
+constexpr char kShortTable[] = "t,u,n,a,x,p\n0,1,0,0,0,1\n500,2,60,90,10,2\n";
 
 class SidecarTest : public log::LogTest {
  protected:
   // A run with one more entry of [columns].
   MeasuredRun Read(const std::string& entry, const UnitSystem& units = {}) {
-    log::WriteBytes(Path("run.csv"), kTable);
+    log::WriteBytes(Path("run.csv"), kShortTable);
     log::WriteBytes(Path("run.toml"),
                     "shaft = \"free\"\n[columns]\ntime = { column = \"t\", unit = \"ms\" }\nvoltage = "
                     "{ column = \"u\", unit = \"mV\" }\n" +
@@ -115,7 +115,7 @@ TEST_F(SidecarTest, UnknownColumnNamesAllKeys) {
 
 // Tests that a command in another quantity is told to leave the unit out.
 TEST_F(SidecarTest, CommandThatIsNoVoltage) {
-  log::WriteBytes(Path("run.csv"), kTable);
+  log::WriteBytes(Path("run.csv"), kShortTable);
   log::WriteBytes(Path("run.toml"),
                   "shaft = \"free\"\n[columns]\ntime = \"t\"\nvoltage = { column = \"u\", unit = \"A\" }\n");
   EXPECT_THAT(

@@ -10,7 +10,7 @@
 namespace hydro::scope {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 // 5 kHz, a ramp with one spike.
 History Ramp(int rows, int spike) {
@@ -22,12 +22,12 @@ History Ramp(int rows, int spike) {
   return history;
 }
 
-struct Filled {
+struct FilledBins {
   std::vector<double> min;
   std::vector<double> max;
 };
-Filled Fill(const Signal& signal, const BinGrid& grid) {
-  Filled filled{std::vector<double>(grid.bins), std::vector<double>(grid.bins)};
+FilledBins Fill(const Signal& signal, const BinGrid& grid) {
+  FilledBins filled{std::vector<double>(grid.bins), std::vector<double>(grid.bins)};
   FillBins(signal, grid, filled.min.data(), filled.max.data());
   return filled;
 }
@@ -39,7 +39,7 @@ TEST(BinsTest, OneSampleIsNeverLost) {
     const History history = Ramp(kRows, spike);
     for (const uint32_t pixels : {1u, 7u, 1200u, 4000u}) {
       const BinGrid grid = GridFor(history, 0, 0, 120, pixels);
-      const Filled bins = Fill({&history, 0, 0}, grid);
+      const FilledBins bins = Fill({&history, 0, 0}, grid);
       int with_spike = 0;
       for (uint32_t k = 0; k < grid.bins; ++k) with_spike += bins.max[k] == 1e6 ? 1 : 0;
       EXPECT_EQ(with_spike, 1) << spike << " on " << pixels;
@@ -53,7 +53,7 @@ TEST(BinsTest, BinsShareNoSample) {
   for (const double width : {0.01, 0.003, 1.0 / 3, 0.0007}) {
     BinGrid grid{0, width, 0, 0};
     grid.bins = static_cast<uint32_t>(grid.BinOf(history.last_time()) + 1);
-    const Filled bins = Fill({&history, 0, 0}, grid);
+    const FilledBins bins = Fill({&history, 0, 0}, grid);
     double next = 0;  // values are row numbers: the bins must go through all of them
     for (uint32_t k = 0; k < grid.bins; ++k) {
       if (std::isnan(bins.min[k])) continue;
@@ -81,7 +81,7 @@ TEST(BinsTest, ZoomedInEachBinIsASample) {
   const BinGrid grid = GridFor(history, 1 / 5000.0, 0.1, 0.12, 1200);
   EXPECT_EQ(grid.width, 1 / 5000.0);
   ASSERT_EQ(grid.bins, 101u);
-  const Filled bins = Fill({&history, 0, 0}, grid);
+  const FilledBins bins = Fill({&history, 0, 0}, grid);
   for (uint32_t k = 0; k < grid.bins; ++k) {
     EXPECT_EQ(bins.min[k], 500 + k);
     EXPECT_EQ(bins.max[k], 500 + k);
@@ -101,10 +101,10 @@ TEST(BinsTest, EndsWithTheHistory) {
 TEST(BinsTest, GapsAreMissing) {
   History history(1);
   for (int i = 0; i < 100; ++i) {
-    const double value = i >= 20 && i < 30 ? kNaN : 1;
+    const double value = i >= 20 && i < 30 ? kNoValue : 1;
     if (i < 50 || i >= 60) history.Append(i * 0.01, &value);
   }
-  const Filled bins = Fill({&history, 0, 0}, {-0.005, 0.01, 0, 100});
+  const FilledBins bins = Fill({&history, 0, 0}, {-0.005, 0.01, 0, 100});
   for (int k = 0; k < 100; ++k) {
     const bool missing = (k >= 20 && k < 30) || (k >= 50 && k < 60);
     EXPECT_EQ(std::isnan(bins.min[k]), missing) << k;
@@ -116,7 +116,7 @@ TEST(BinsTest, GapsAreMissing) {
 TEST(BinsTest, HeldValuesLast) {
   History history(1);
   for (const double t : {1.0, 2.0}) history.Append(t, &t);
-  const Filled bins = Fill({&history, 0, 2.5}, {0, 0.5, 0, 12});
+  const FilledBins bins = Fill({&history, 0, 2.5}, {0, 0.5, 0, 12});
   for (int k = 0; k < 12; ++k) {
     const double t = 0.5 * k;
     if (t < 1 || t > 4.5) {

@@ -21,13 +21,13 @@
 namespace hydro::settings {
 namespace {
 
-const std::string kEffects = std::string(HYDRO_SOURCE_DIR) + "/examples/effects";
+const std::string kEffectFolder = std::string(HYDRO_SOURCE_DIR) + "/examples/effects";
 
 // The file of an effect of the catalogue: "amp.lag" is in amp_lag.toml.
 std::string FileOf(const std::string& id) {
   std::string name = id;
   std::replace(name.begin(), name.end(), '.', '_');
-  return kEffects + "/catalogue/" + name + ".toml";
+  return kEffectFolder + "/catalogue/" + name + ".toml";
 }
 
 bool Delays(const std::string& id) { return id == "amp.delay" || id == "sensor.skew"; }
@@ -40,7 +40,7 @@ std::vector<std::string> WithoutDelay() {
   return ids;
 }
 
-model::ModelDescription ModelWith(const model::EffectDescription& effect) {
+model::ModelDescription ModelWithEffect(const model::EffectDescription& effect) {
   model::ModelDescription model;
   model.parameters = testing::Table1();
   model.effects = {effect};
@@ -80,9 +80,9 @@ double Voltage(double time) {
   return 5 * std::sin(60 * time);
 }
 
-std::vector<model::Measurement> Trajectory(const model::EffectDescription& effect,
-                                           const model::ActuatorOptions& options) {
-  model::Actuator actuator(ModelWith(effect), options);
+std::vector<model::Measurement> ModelTrajectory(const model::EffectDescription& effect,
+                                                const model::ActuatorOptions& options) {
+  model::Actuator actuator(ModelWithEffect(effect), options);
   std::vector<model::Measurement> all;
   for (int tick = 0; tick < 250; ++tick) {
     actuator.Advance(Voltage(1e-3 * tick), 1e-3 * (tick + 1));
@@ -125,8 +125,8 @@ TEST_P(WrittenCatalogue, MovesAsTheCompiledOne) {
       model::ActuatorOptions options;
       options.shaft = clamped ? model::Shaft::kClamped : model::Shaft::kFree;
       options.bypass = bypass;
-      const std::vector<model::Measurement> compiled = Trajectory(pair.compiled, options);
-      EXPECT_LT(Difference(compiled, Trajectory(pair.written, options)), 1e-9) << clamped << bypass;
+      const std::vector<model::Measurement> compiled = ModelTrajectory(pair.compiled, options);
+      EXPECT_LT(Difference(compiled, ModelTrajectory(pair.written, options)), 1e-9) << clamped << bypass;
     }
   }
 }
@@ -146,7 +146,7 @@ TEST_P(WrittenCatalogue, Acts) {
       actuator.Advance(Voltage(1e-3 * tick), 1e-3 * (tick + 1));
       without.push_back(actuator.Measure());
     }
-    most = std::max(most, Difference(without, Trajectory(pair.written, options)));
+    most = std::max(most, Difference(without, ModelTrajectory(pair.written, options)));
   }
   EXPECT_GT(most, 1e-4);
 }
@@ -164,8 +164,10 @@ TEST_P(WrittenCatalogue, HasTheDerivatives) {
   std::vector<model::Unknown> unknowns = {{model::Unknown::Kind::kBase, model::BasePlace("b")}};
   for (size_t i = 0; i < pair.compiled.parameters.size(); ++i)
     unknowns.push_back({model::Unknown::Kind::kEffect, i});
-  const model::Response compiled = model::Respond(ModelWith(pair.compiled), stimulus, start, unknowns, {});
-  const model::Response written = model::Respond(ModelWith(pair.written), stimulus, start, unknowns, {});
+  const model::Response compiled =
+      model::Respond(ModelWithEffect(pair.compiled), stimulus, start, unknowns, {});
+  const model::Response written =
+      model::Respond(ModelWithEffect(pair.written), stimulus, start, unknowns, {});
   for (size_t channel = 0; channel < model::kChannels; ++channel) {
     EXPECT_LT(Difference(compiled.values[channel], written.values[channel]), 1e-9);
     for (size_t i = 0; i < unknowns.size(); ++i) {
@@ -178,11 +180,11 @@ TEST_P(WrittenCatalogue, HasTheDerivatives) {
 // Tests that a model's text has the whole effect, and reads back as it.
 TEST_P(WrittenCatalogue, IsKeptInAModelsText) {
   const Pair pair(GetParam());
-  const std::string text = FormatModel(ModelWith(pair.written));
+  const std::string text = FormatModel(ModelWithEffect(pair.written));
   const model::ModelDescription back = ParseModel(text, "back.toml");
   EXPECT_EQ(FormatModel(back), text);
   model::ActuatorOptions options;
-  EXPECT_EQ(Difference(Trajectory(pair.written, options), Trajectory(back.effects[0], options)), 0);
+  EXPECT_EQ(Difference(ModelTrajectory(pair.written, options), ModelTrajectory(back.effects[0], options)), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, WrittenCatalogue, ::testing::ValuesIn(WithoutDelay()),
@@ -341,7 +343,7 @@ TEST_F(EffectFileTest, NotANumber) {
                         << "\"\n[parameters.k]\nmeaning = \"m\"\n";
     model::EffectDescription effect{"my.nan", {{"k", 1}}, {}};
     effect.formulas = LoadEffectFile(name);
-    model::Actuator actuator(ModelWith(effect), {});
+    model::Actuator actuator(ModelWithEffect(effect), {});
     EXPECT_THROW(
         {
           for (int tick = 0; tick < 1000; ++tick) actuator.Advance(3, 1e-3 * (tick + 1));
@@ -356,7 +358,7 @@ TEST_F(EffectFileTest, NotANumber) {
 TEST_F(EffectFileTest, AModelNamesItsFile) {
   const std::string folder = ::testing::TempDir() + "/own_effect_model";
   std::filesystem::create_directories(folder);
-  std::filesystem::copy_file(kEffects + "/arm_spring.toml", folder + "/arm_spring.toml",
+  std::filesystem::copy_file(kEffectFolder + "/arm_spring.toml", folder + "/arm_spring.toml",
                              std::filesystem::copy_options::overwrite_existing);
   const std::string model =
       ReadTextFile(std::string(HYDRO_SOURCE_DIR) + "/config/models/table1.toml") +

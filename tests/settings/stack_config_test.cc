@@ -42,7 +42,7 @@ TEST(StackConfigTest, DefaultsAndTicks) {
   EXPECT_EQ(config.logger.memory_mb, 64);
 }
 
-const char kEveryKey[] = R"(
+const char kEveryStackKey[] = R"(
 [model]
 file = "models/m.toml"
 shaft = "driven"
@@ -136,7 +136,7 @@ lock_memory = false
 
 // Tests that every key reaches its field.
 TEST(StackConfigTest, ReadsEveryKey) {
-  const StackConfig config = Parsed(kEveryKey);
+  const StackConfig config = Parsed(kEveryStackKey);
   EXPECT_EQ(config.model.file, "models/m.toml");
   EXPECT_EQ(config.model.shaft, model::Shaft::kDriven);
   EXPECT_TRUE(config.model.bypass);
@@ -243,7 +243,7 @@ TEST(StackConfigTest, ProgramOfTheUsersOwn) {
 
 // Tests that the effective text gives the same configuration, and itself, again.
 TEST(StackConfigTest, EffectiveTextIsAFixedPoint) {
-  for (const char* text : {kConfigText, kEveryKey}) {
+  for (const char* text : {kConfigText, kEveryStackKey}) {
     const StackConfig config = Parsed(text);
     const StackConfig again = Parsed(config.text);
     EXPECT_EQ(again.text, config.text);

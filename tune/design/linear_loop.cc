@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/maths/matrix_functions.h"
+#include "tune/design/held_input.h"
 
 namespace hydro::design {
 namespace {
@@ -19,18 +20,6 @@ using Column = Eigen::Map<const Eigen::VectorXd>;
 constexpr int kMotorSpeedOutput = 1;
 constexpr int kP1Output = 4;
 constexpr int kP2Output = 5;
-
-// States that change and on which something depends.
-std::vector<int> StatesThatMatter(const Eigen::MatrixXd& A, const Eigen::VectorXd& B,
-                                  const Eigen::MatrixXd& outputs) {
-  std::vector<int> kept;
-  for (int i = 0; i < A.rows(); ++i) {
-    const bool moves = !A.row(i).isZero(0) || B[i] != 0;
-    const bool matters = !A.col(i).isZero(0) || !outputs.col(i).isZero(0);
-    if (moves && matters) kept.push_back(i);
-  }
-  return kept;
-}
 
 std::vector<double> Copy(const Eigen::MatrixXd& m) { return {m.data(), m.data() + m.size()}; }
 
@@ -47,18 +36,15 @@ LinearPressureLoop::LinearPressureLoop(const model::LinearModel& model, const Lo
   const Eigen::MatrixXd full_C = Map(model.C.data(), model.outputs, model.states);
   Eigen::MatrixXd outputs(2, model.states);
   outputs << full_C.row(kP2Output) - full_C.row(kP1Output), full_C.row(kMotorSpeedOutput);
-  const std::vector<int> kept = StatesThatMatter(full_A, full_B, outputs);
+  const std::vector<Eigen::Index> kept = StatesThatMatter(full_A, full_B, outputs);
   const auto n = static_cast<Eigen::Index>(kept.size());
   Eigen::MatrixXd A = full_A(kept, kept);
   Eigen::VectorXd B = full_B(kept);
   Eigen::MatrixXd C = outputs(Eigen::all, kept);
   if (timing.interval > 0) {
-    Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + 1, n + 1);
-    both.topLeftCorner(n, n) = A * timing.interval;
-    both.topRightCorner(n, 1) = B * timing.interval;
-    const Eigen::MatrixXd exponential = maths::Exponential(both);
-    A = exponential.topLeftCorner(n, n);
-    B = exponential.topRightCorner(n, 1);
+    const HeldInput held = TransitionOver(A, B, timing.interval);
+    A = held.states;
+    B = held.input;
     if (timing.delay_ticks == 1) {  // the acting voltage is one more state
       Eigen::MatrixXd delayed = Eigen::MatrixXd::Zero(n + 1, n + 1);
       delayed.topLeftCorner(n, n) = A;

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "base/maths/matrix_functions.h"
 #include "model/terms/state.h"
+#include "tune/design/held_input.h"
 
 namespace hydro::design {
 namespace {
@@ -26,7 +26,7 @@ constexpr int kMostDelayTicks = 60;
 constexpr int64_t kMostSamples = 500;
 
 // Rows of LinearModel's outputs.
-enum Output : uint8_t { kSpeed = 1, kAngle = 2, kArmRate = 3, kFirst = 4, kSecond = 5 };
+enum Output : uint8_t { kSpeedRow = 1, kAngleRow = 2, kArmRateRow = 3, kFirstRow = 4, kSecondRow = 5 };
 
 // A delay as whole ticks and a remainder above 0 and up to one tick, so that a late value always belongs to
 // an earlier tick.
@@ -41,39 +41,6 @@ Delay SplitDelay(double seconds, double tick, const char* what) {
     throw std::domain_error(fmt::format("{} of {} s is more than {} ticks", what, seconds, kMostDelayTicks));
   }
   return {static_cast<int>(ticks), seconds - ticks * tick};
-}
-
-// The transition of the states and the held input.
-struct Transition {
-  MatrixXd states;
-  Eigen::VectorXd input;
-};
-
-Transition TransitionOver(const MatrixXd& A, const MatrixXd& B, double time) {
-  const Index n = A.rows();
-  MatrixXd both = MatrixXd::Zero(n + 1, n + 1);
-  both.topLeftCorner(n, n) = A * time;
-  both.topRightCorner(n, 1) = B * time;
-  const MatrixXd exponential = maths::Exponential(both);
-  return {exponential.topLeftCorner(n, n), exponential.topRightCorner(n, 1)};
-}
-
-// The states that change and on which something depends.
-std::vector<Index> StatesThatMatter(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
-  std::vector<Index> kept(static_cast<size_t>(A.rows()));
-  std::iota(kept.begin(), kept.end(), 0);
-  const auto idle = [&](Index i) {
-    bool moves = B(i, 0) != 0;
-    bool matters = !C.col(i).isZero(0);
-    for (const Index j : kept) {
-      moves = moves || A(i, j) != 0;
-      matters = matters || A(j, i) != 0;
-    }
-    return !moves || !matters;
-  };
-  while (std::erase_if(kept, idle) > 0) {
-  }
-  return kept;
 }
 
 MatrixXd Power(MatrixXd base, int64_t exponent) {
@@ -92,8 +59,8 @@ MatrixXd Power(MatrixXd base, int64_t exponent) {
 // reference computed last, the angle at the last sample, and late readings.
 struct LinearStack::Parts {
   MatrixXd C;
-  Transition before, after;  // with the voltages that act before and after the end of the amplifier's delay
-  Transition read_before,
+  HeldInput before, after;  // with the voltages that act before and after the end of the amplifier's delay
+  HeldInput read_before,
       read_after;            // the same, up to the time within a tick that late channels read
   bool reads_after = false;  // that time is after the change of the voltage
   int amplifier_ticks = -1;  // -1: no delay
@@ -122,9 +89,9 @@ struct LinearStack::Parts {
 
 RowVectorXd LinearStack::Parts::Voltage(const MatrixXd& y, const RowVectorXd& reference_row,
                                         double share) const {
-  const RowVectorXd speed = y.row(kSpeed) - pressure.arm_speed_ratio * y.row(kArmRate);
+  const RowVectorXd speed = y.row(kSpeedRow) - pressure.arm_speed_ratio * y.row(kArmRateRow);
   const double areas = pressure.sides.areas;
-  const RowVectorXd load_pressure = (1 + areas) * y.row(kSecond) - (1 - areas) * y.row(kFirst);
+  const RowVectorXd load_pressure = (1 + areas) * y.row(kSecondRow) - (1 - areas) * y.row(kFirstRow);
   const RowVectorXd fed_back = -pressure.gains.k_p * (load_pressure + pressure.gains.k_v * speed);
   // The reference passes through the same amplifier, so a factor on the voltage multiplies all of eq. (16).
   return share * (fed_back + (pressure.gains.k_p + pressure.reference_feedforward) * reference_row);
@@ -137,8 +104,8 @@ RowVectorXd LinearStack::Parts::Reference(const RowVectorXd& angle, double share
 
 MatrixXd LinearStack::Parts::Advanced(const MatrixXd& x, const RowVectorXd& old_voltage,
                                       const RowVectorXd& new_voltage, bool to_reading) const {
-  const Transition& first = to_reading ? read_before : before;
-  const Transition& second = to_reading ? read_after : after;
+  const HeldInput& first = to_reading ? read_before : before;
+  const HeldInput& second = to_reading ? read_after : after;
   MatrixXd result = first.states * x;
   result += first.input * old_voltage;
   if (to_reading && !reads_after) return result;
@@ -164,9 +131,9 @@ MatrixXd LinearStack::Parts::Tick(bool pressure_samples, bool position_samples, 
     RowVectorXd reference_now = now.row(reference());
     reference_row = reference_now;
     if (position_samples) {
-      reference_now = Reference(y.row(kAngle), reference_share);
+      reference_now = Reference(y.row(kAngleRow), reference_share);
       next.row(reference()) = reference_now;
-      next.row(previous()) = y.row(kAngle);
+      next.row(previous()) = y.row(kAngleRow);
     }
     if (at_once) reference_row = reference_now;
   }
@@ -215,8 +182,8 @@ LinearStack::LinearStack(const model::LinearModel& model, const StackTiming& tim
   const MatrixXd B = Eigen::Map<const MatrixXd>(model.B.data(), model.states, 1);
   MatrixXd C = Eigen::Map<const MatrixXd>(model.C.data(), model.outputs, model.states);
   C.row(0).setZero();
-  if (position == nullptr) C.row(kAngle).setZero();
-  if (pressure.arm_speed_ratio == 0) C.row(kArmRate).setZero();
+  if (position == nullptr) C.row(kAngleRow).setZero();
+  if (pressure.arm_speed_ratio == 0) C.row(kArmRateRow).setZero();
   const std::vector<Index> kept = StatesThatMatter(A, B, C);
   const MatrixXd a = A(kept, kept);
   const MatrixXd b = B(kept, 0);

@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-runs::MeasuredRun Bench() {
+runs::MeasuredRun BenchRun() {
   runs::MeasuredRun run;
   run.shaft = model::Shaft::kClamped;
   run.time = {0, 1, 2};
@@ -26,7 +26,7 @@ runs::MeasuredRun Bench() {
 }
 
 RecordingMistake Mistake(const std::string& what) {
-  const std::vector<RecordingMistake> all = PossibleMistakes(Bench());
+  const std::vector<RecordingMistake> all = PossibleMistakes(BenchRun());
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.what == what; });
   EXPECT_NE(found, all.end()) << what;
   return found == all.end() ? RecordingMistake() : *found;
@@ -35,11 +35,11 @@ RecordingMistake Mistake(const std::string& what) {
 // Tests that only mistakes in what is measured are possible, and exchanged pressures not with the bypass
 // open.
 TEST(RecordingMistake, OfWhatIsMeasured) {
-  for (const RecordingMistake& mistake : PossibleMistakes(Bench())) {
+  for (const RecordingMistake& mistake : PossibleMistakes(BenchRun())) {
     EXPECT_EQ(mistake.what.find("motor"), std::string::npos) << mistake.what;
     EXPECT_EQ(mistake.what.find("arm"), std::string::npos) << mistake.what;
   }
-  runs::MeasuredRun bypass = Bench();
+  runs::MeasuredRun bypass = BenchRun();
   bypass.bypass = true;
   for (const RecordingMistake& mistake : PossibleMistakes(bypass)) EXPECT_FALSE(mistake.pressures_exchanged);
   Mistake("p1 and p2 are exchanged");
@@ -51,7 +51,7 @@ TEST(RecordingMistake, AMovingArmIsNotHeld) {
   model::Parameters model;
   model.c = 0.002;
   model.V_ms = 2.5e-4;
-  runs::MeasuredRun run = Bench();
+  runs::MeasuredRun run = BenchRun();
   run.shaft = model::Shaft::kFree;
   const auto clamped = [&] {
     const std::vector<RecordingMistake> others = OtherShafts(run, model);
@@ -96,18 +96,18 @@ TEST(RecordingMistake, NothingImpossibleIsOffered) {
 
 // Tests that values, noise, and the sidecar's scale and offset are corrected together.
 TEST(RecordingMistake, Correct) {
-  runs::MeasuredRun run = Bench();
+  runs::MeasuredRun run = BenchRun();
   Correct(Mistake("p1 and p2 are in bar"), &run);
   EXPECT_NEAR(run.p1.values[1], 290.075, 1e-3);
   EXPECT_NEAR(*run.p1.noise, 7.2519, 1e-4);
   EXPECT_NEAR(run.p2.source.scale, 29.0075, 1e-4);
   EXPECT_NEAR(run.p2.source.offset, 43.5113, 1e-4);
-  run = Bench();
+  run = BenchRun();
   Correct(Mistake("p1 and p2 are exchanged"), &run);
   Correct(Mistake("voltage has the wrong sign"), &run);
   EXPECT_THAT(run.p1.values, ElementsAre(40, 50, 60));
   EXPECT_THAT(run.voltage.values, ElementsAre(-1, -2, -3));
-  run = Bench();
+  run = BenchRun();
   Correct(Mistake("time is in ms"), &run);
   EXPECT_THAT(run.time, ElementsAre(0, 0.001, 0.002));
 }
@@ -115,7 +115,7 @@ TEST(RecordingMistake, Correct) {
 // Tests the lines that mend a sidecar: a unit where nothing else is said of the column, else scale and
 // offset.
 TEST(RecordingMistake, SidecarLines) {
-  const runs::MeasuredRun run = Bench();
+  const runs::MeasuredRun run = BenchRun();
   EXPECT_EQ(SidecarLines({Mistake("time is in ms")}, run), "time = { column = \"t\", unit = \"ms\" }");
   EXPECT_EQ(SidecarLines({Mistake("voltage has the wrong sign")}, run),
             "voltage = { column = \"V\", scale = -1 }");
@@ -129,7 +129,7 @@ TEST(RecordingMistake, SidecarLines) {
 // Tests that the columns of a log without a sidecar are named as its export has them, with the unit of the
 // model.
 TEST(RecordingMistake, ColumnsOfALog) {
-  runs::MeasuredRun run = Bench();
+  runs::MeasuredRun run = BenchRun();
   run.p1.source.column = run.p2.source.column = "";
   EXPECT_THAT(SidecarLines({Mistake("p1 and p2 are exchanged")}, run),
               ::testing::StartsWith("p1 = { column = \"p2_psi\""));
@@ -141,7 +141,7 @@ TEST(RecordingMistake, ColumnsOfALog) {
 // Tests that a unit that is stated wrongly is one of the mistakes, with the known units only; beside a sign,
 // too.
 TEST(RecordingMistake, StatedUnit) {
-  runs::MeasuredRun run = Bench();
+  runs::MeasuredRun run = BenchRun();
   run.p1.source.scale = run.p2.source.scale = 14.5037738;
   const std::vector<RecordingMistake> all = PossibleMistakes(run);
   std::vector<std::string> pressures;
@@ -155,7 +155,7 @@ TEST(RecordingMistake, StatedUnit) {
       all.begin(), all.end(), [](const auto& one) { return one.what == "p1 and p2 are in psi, not in bar"; });
   ASSERT_NE(psi, all.end());
   EXPECT_NEAR(psi->factors[0].second, 1 / 14.5037738, 1e-8);
-  run = Bench();
+  run = BenchRun();
   run.motor_speed = {{1, 2, 3}, {}, {"N"}};
   std::vector<RecordingMistake> both;
   for (const RecordingMistake& mistake : PossibleMistakes(run)) {
@@ -168,7 +168,7 @@ TEST(RecordingMistake, StatedUnit) {
 
 // Tests that every set of mistakes has a twin: the recording seen from the other side.
 TEST(RecordingMistake, SeenFromTheOtherSide) {
-  runs::MeasuredRun run = Bench();
+  runs::MeasuredRun run = BenchRun();
   run.motor_speed = {{1, 2, 3}, {}, {"N"}};
   const auto twin = [&run](const std::vector<std::string>& what) {
     std::vector<RecordingMistake> mistakes;
@@ -191,7 +191,7 @@ TEST(RecordingMistake, SeenFromTheOtherSide) {
 
 // Tests which mistakes the effect sensor.sign can stand for: one sensor, never the command.
 TEST(RecordingMistake, InvertedSensor) {
-  runs::MeasuredRun run = Bench();
+  runs::MeasuredRun run = BenchRun();
   run.motor_speed.values = {1, 2, 3};
   std::vector<std::string> inverted;
   for (const RecordingMistake& mistake : PossibleMistakes(run)) {

@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr size_t kSamples = 500;
+constexpr size_t kPictured = 500;
 
 diagnose::MeasuredCurve Leakage() {
   return {.element = "cross_leakage",
@@ -116,7 +116,7 @@ TEST(HorizonFigure, HasAPointForEachHorizon) {
 
 // Tests that a run has its signals and residuals side by side, with the disagreement shaded where it lies.
 TEST(RunFigure, ShowsSignalsAndResiduals) {
-  const diagnose::Diagnosis diagnosis = ExampleDiagnosis(kSamples);
+  const diagnose::Diagnosis diagnosis = ExampleDiagnosis(kPictured);
   const std::optional<page::Figure> figure = diagnose::RunFigure(diagnosis, diagnosis.curves[0], false);
   ASSERT_TRUE(figure.has_value());
   EXPECT_EQ(figure->columns, 2u);
@@ -136,17 +136,17 @@ TEST(RunFigure, ShowsSignalsAndResiduals) {
 TEST(RunFigure, NoneWithoutCurves) {
   diagnose::RunCurves run;
   run.time = {0, 1};
-  EXPECT_FALSE(diagnose::RunFigure(ExampleDiagnosis(kSamples), run, false).has_value());
-  run = ExampleDiagnosis(kSamples).curves[0];
+  EXPECT_FALSE(diagnose::RunFigure(ExampleDiagnosis(kPictured), run, false).has_value());
+  run = ExampleDiagnosis(kPictured).curves[0];
   run.time.assign(run.time.size(), 1.0);
-  EXPECT_FALSE(diagnose::RunFigure(ExampleDiagnosis(kSamples), run, false).has_value());
+  EXPECT_FALSE(diagnose::RunFigure(ExampleDiagnosis(kPictured), run, false).has_value());
 }
 
 // Tests that what ran away does not make the picture of a run flat, and that residuals keep room for three
 // times the noise.
 TEST(RunFigure, LimitsItsRanges) {
-  diagnose::Diagnosis diagnosis = ExampleDiagnosis(kSamples);
-  diagnosis.curves[0].curves[1].before.assign(kSamples, 1e9);
+  diagnose::Diagnosis diagnosis = ExampleDiagnosis(kPictured);
+  diagnosis.curves[0].curves[1].before.assign(kPictured, 1e9);
   diagnosis.curves[0].curves[1].after = diagnosis.curves[0].curves[1].measured;
   const std::optional<page::Figure> figure = diagnose::RunFigure(diagnosis, diagnosis.curves[0], false);
   EXPECT_LT(figure->panels[2].y.max, 2500);

@@ -189,7 +189,7 @@ TEST(Closure, IsKnownAndNotListed) {
   }
 }
 
-std::string ErrorOf(const model::EffectDescription& effect) {
+std::string ClosureError(const model::EffectDescription& effect) {
   try {
     const model::Equations equations(Table1Model({effect}), Held(model::Shaft::kClamped));
   } catch (const model::ModelError& error) {
@@ -203,7 +203,7 @@ TEST(Closure, RefusesWrongLists) {
   const auto changed = [](auto change) {
     model::EffectDescription effect = Curve("pump_torque", "motor_speed", {-1, 0, 1}, {1, 0, -1});
     change(&effect);
-    return ErrorOf(effect);
+    return ClosureError(effect);
   };
   using E = model::EffectDescription*;
   EXPECT_EQ(changed([](E) {}), "");

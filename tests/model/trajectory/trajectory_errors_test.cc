@@ -12,7 +12,7 @@ namespace hydro::trajectory {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Refused {
   std::string says;
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
                               }},
                       Refused{"step 1 value: found inf",
                               [] {
-                                return MakeSteps(0, {{1, kInf}});
+                                return MakeSteps(0, {{1, kInfinite}});
                               }},
                       Refused{"step 1 time: found nan",
                               [] {
@@ -58,14 +58,14 @@ INSTANTIATE_TEST_SUITE_P(
                       Refused{"frequency: found 0", [] { return MakeSine(0, 1, 0, 0, 0); }},
                       Refused{"frequency: found -1", [] { return MakeSine(0, 1, -1, 0, 0); }},
                       Refused{"amplitude: found nan", [] { return MakeSine(0, kNan, 1, 0, 0); }},
-                      Refused{"phase: found inf", [] { return MakeSine(0, 1, 1, 0, kInf); }},
+                      Refused{"phase: found inf", [] { return MakeSine(0, 1, 1, 0, kInfinite); }},
                       Refused{"offset: found nan", [] { return MakeSine(kNan, 1, 1, 0, 0); }},
                       Refused{"start: found nan", [] { return MakeSine(0, 1, 1, kNan, 0); }},
                       Refused{"offset + amplitude: found inf",
                               [] { return MakeSine(1e308, 1e308, 1, 0, 0); }},
                       Refused{"rate: found inf", [] { return MakeSine(0, 1e300, 1e300, 0, 0); }},
-                      Refused{"frequency: found inf", [] { return MakeSquare(0, 1, kInf, 0); }},
-                      Refused{"amplitude: found -inf", [] { return MakeSquare(0, -kInf, 1, 0); }},
+                      Refused{"frequency: found inf", [] { return MakeSquare(0, 1, kInfinite, 0); }},
+                      Refused{"amplitude: found -inf", [] { return MakeSquare(0, -kInfinite, 1, 0); }},
                       Refused{"duration: found 0", [] { return MakeChirp(0, 1, 1, 2, 0, 0); }},
                       Refused{"duration: found nan", [] { return MakeChirp(0, 1, 1, 2, 0, kNan); }},
                       Refused{"first frequency: found -1", [] { return MakeChirp(0, 1, -1, 2, 0, 1); }},

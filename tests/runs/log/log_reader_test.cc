@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 class LogReaderTest : public LogTest {};
 
-const std::vector<EventContents> kEvents = {
+const std::vector<EventContents> kThreeEvents = {
     {"ONE", "first data", 1}, {"TWO", "second", 2}, {"THREE", "3rd", 3}};
 
 size_t SizeOf(const EventContents& event) {
@@ -29,11 +29,11 @@ TEST_F(LogReaderTest, EmptyFile) {
 // Tests that a log without checksums cut at any byte of any event gives the events before it, then an error
 // that names the place.
 TEST_F(LogReaderTest, TruncatedAtEveryByte) {
-  WritePlain(Path("log"), kEvents);
+  WritePlain(Path("log"), kThreeEvents);
   const std::string bytes = ReadBytes(Path("log"));
   size_t begin = 0;
-  for (size_t k = 0; k < kEvents.size(); ++k) {
-    const size_t end = begin + SizeOf(kEvents[k]);
+  for (size_t k = 0; k < kThreeEvents.size(); ++k) {
+    const size_t end = begin + SizeOf(kThreeEvents[k]);
     for (size_t size = begin + 1; size < end; ++size) {
       WriteBytes(Path("cut"), bytes.substr(0, size));
       LogReader reader(Path("cut"));
@@ -73,11 +73,11 @@ TEST_F(LogReaderTest, DamagedHeader) {
        "found sync word 0x64eda1da; allowed 0xeda1da01"},
       {"zero byte in the channel", 29, std::string("\0", 1), "found a zero byte in the channel's name"},
   };
-  WritePlain(Path("log"), kEvents);
+  WritePlain(Path("log"), kThreeEvents);
   const std::string bytes = ReadBytes(Path("log"));
   for (const Damage& damage : damages) {
     std::string damaged = bytes;
-    damaged.replace(SizeOf(kEvents[0]) + damage.offset, damage.bytes.size(), damage.bytes);
+    damaged.replace(SizeOf(kThreeEvents[0]) + damage.offset, damage.bytes.size(), damage.bytes);
     WriteBytes(Path("damaged"), damaged);
     EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("damaged")); }), HasSubstr(damage.says)) << damage.name;
   }
@@ -85,7 +85,7 @@ TEST_F(LogReaderTest, DamagedHeader) {
 
 // Tests that an event whose length is wrong is not handed out before the error.
 TEST_F(LogReaderTest, DoesNotReturnAnEventOfWrongLength) {
-  WritePlain(Path("log"), kEvents);
+  WritePlain(Path("log"), kThreeEvents);
   std::string bytes = ReadBytes(Path("log"));
   bytes[27] = static_cast<char>(bytes[27] - 1);
   WriteBytes(Path("log"), bytes);
