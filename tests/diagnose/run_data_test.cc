@@ -27,8 +27,6 @@ std::vector<bool> FreeStates(const diagnose::RunData& data) {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 // Half a second of a clamped run at 1 kHz: speed decaying from 50 rad/s, pressures from 120 and 140 psi.
 runs::MeasuredRun ClampedRun() {
   runs::MeasuredRun run;
@@ -261,7 +259,7 @@ TEST(PrepareRun, Refusals) {
   EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p1.values.assign(500, 7.0); }),
             "step.csv: line 2: p1: found 7 psi here and in every later row, allowed a signal that "
             "changes, or leave it out");
-  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p2.values.assign(500, kMissing); }),
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p2.values.assign(500, runs::kMissing); }),
             "step.csv: p2: found no value in any row, allowed 20 values or more, or leave the signal out");
   EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.motor_speed.values[3] = -2e5; }),
             "step.csv: line 5: motor_speed: found -200000 rad/s, allowed -100000 to 100000 with this model: "
@@ -394,7 +392,7 @@ TEST(SmoothMotion, WithoutNoise) {
   std::vector<double> time, angle;
   for (size_t i = 0; i < 1000; ++i) {
     time.push_back(0.001 * static_cast<double>(i) + (i % 3 == 0 ? 3e-4 : 0));
-    angle.push_back(i % 10 == 4 ? kMissing : 0.4 * std::sin(2 * std::numbers::pi * 2 * time.back()));
+    angle.push_back(i % 10 == 4 ? runs::kMissing : 0.4 * std::sin(2 * std::numbers::pi * 2 * time.back()));
   }
   const std::unique_ptr<trajectory::Trajectory> motion = SmoothMotion(time, angle, 8e-6, {}, 0);
   for (double t = 0.05; t < 0.95; t += 0.0007) {

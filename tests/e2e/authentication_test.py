@@ -197,9 +197,10 @@ class AuthenticationTest(stack.TestCase):
         launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *self.keyed, *PATIENT,
                              "--log", self.path("plain.lcmlog"))
         # By messages, not by time: on a machine with other work, LCM's logger loses most of what is sent.
-        events = []
-        self.wait_until(lambda: events.extend(wire.new_events()) or len([e for e in events if e.data[-40:-32] == b"hydroMAC"]) > 500,
-                        "sealed messages")
+        states = []
+        self.wait_until(lambda: states.extend(e for e in wire.new_events()
+                                              if e.channel == "HYDRO_STATE" and e.data[-40:-32] == b"hydroMAC") or len(states) > 750,
+                        "sealed states")
         launch.send(2)
         self.assertEqual(launch.wait(), 0, launch.report())
         recorder.send(2)
@@ -212,8 +213,8 @@ class AuthenticationTest(stack.TestCase):
                 rows[name] = {row["tick"]: (row["p1_psi"], row["p2_psi"], row["arm_angle_rad"])
                               for row in csv.DictReader(file)}
         both = rows["wire.lcmlog"].keys() & rows["plain.lcmlog"].keys()
+        self.assertGreater(len(both), 750)
         self.assertGreater(len(both), 0.5 * len(rows["wire.lcmlog"]))
-        self.assertGreater(len(both), 50)
         for tick in both:
             self.assertEqual(rows["wire.lcmlog"][tick], rows["plain.lcmlog"][tick])
 

@@ -10,8 +10,6 @@
 namespace hydro::scope {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-
 // 5 kHz, a ramp with one spike.
 History Ramp(int rows, int spike) {
   History history(1);
@@ -101,7 +99,7 @@ TEST(BinsTest, EndsWithTheHistory) {
 TEST(BinsTest, GapsAreMissing) {
   History history(1);
   for (int i = 0; i < 100; ++i) {
-    const double value = i >= 20 && i < 30 ? kNoValue : 1;
+    const double value = i >= 20 && i < 30 ? std::numeric_limits<double>::quiet_NaN() : 1;
     if (i < 50 || i >= 60) history.Append(i * 0.01, &value);
   }
   const FilledBins bins = Fill({&history, 0, 0}, {-0.005, 0.01, 0, 100});

@@ -16,7 +16,6 @@ namespace hydro::design {
 namespace {
 
 using experiments::ShippedModel;
-using Pole = std::complex<double>;
 
 // Figure 8's design model as if it were an actuator whose voltage is dp_ref and whose p2 is dp.
 model::LinearModel AsActuator(const DesignModel& m) {
@@ -38,9 +37,9 @@ model::LinearModel AsActuator(const DesignModel& m) {
   return model;
 }
 
-double Radius(const std::vector<Pole>& poles) {
+double Radius(const std::vector<Complex>& poles) {
   double radius = 0;
-  for (const Pole& pole : poles) radius = std::max(radius, std::abs(pole));
+  for (const Complex& pole : poles) radius = std::max(radius, std::abs(pole));
   return radius;
 }
 
@@ -105,15 +104,15 @@ TEST(LinearStack, AgreesWithThePressureLoop) {
     for (const int delay : {0, 1}) {
       const LinearPressureLoop other(point.model, {1e-3, delay});
       const LinearStack stack(point.model, {.tick = 1e-3, .command_delay = delay}, {.gains = gains}, nullptr);
-      std::vector<Pole> poles;
-      for (const Pole& z : stack.Poles(1, 0)) {
+      std::vector<Complex> poles;
+      for (const Complex& z : stack.Poles(1, 0)) {
         if (std::abs(z) > 1e-12) poles.push_back(std::log(z) / 1e-3);
       }
-      const auto order = [](Pole a, Pole b) {
+      const auto order = [](Complex a, Complex b) {
         return a.real() != b.real() ? a.real() < b.real() : a.imag() > b.imag();
       };
       std::sort(poles.begin(), poles.end(), order);
-      std::vector<Pole> expected = other.Poles(gains);
+      std::vector<Complex> expected = other.Poles(gains);
       ASSERT_EQ(poles.size(), expected.size());
       for (size_t i = 0; i < poles.size(); ++i) EXPECT_LT(std::abs(poles[i] - expected[i]), 1e-5) << i;
       const LoopMargins margins =
@@ -138,9 +137,9 @@ TEST(LinearStack, TendsToTheContinuousArmLoop) {
     const position_ctrl::PositionLawSettings position = {.c1 = 10000, .c2 = 900, .sample_interval = tick};
     const LinearStack stack(middle.model, {.tick = tick}, pressure, &position);
     double worst = 0;
-    for (const Pole& expected : continuous.Poles(10000, 900)) {
+    for (const Complex& expected : continuous.Poles(10000, 900)) {
       double nearest = 1e9;
-      for (const Pole& z : stack.Poles(1, 1)) {
+      for (const Complex& z : stack.Poles(1, 1)) {
         nearest = std::min(nearest, std::abs(std::log(z) / tick - expected));
       }
       worst = std::max(worst, nearest / std::abs(expected));

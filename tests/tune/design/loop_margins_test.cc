@@ -5,16 +5,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "tune/design/position_design.h"
+
 namespace hydro::design {
 namespace {
 
-using Phasor = std::complex<double>;
 constexpr double kPeriod = 0.01;
 
 // An integrator behind a delay of one sample: x(k+1) = x(k) - gain x(k-1). Its poles solve z^2 - z + gain =
 // 0.
-std::vector<Phasor> DelayedIntegrator(double gain) {
-  const Phasor root = std::sqrt(Phasor(0.25 - gain));
+std::vector<Complex> DelayedIntegrator(double gain) {
+  const Complex root = std::sqrt(Complex(0.25 - gain));
   return {0.5 + root, 0.5 - root};
 }
 
@@ -48,7 +49,7 @@ TEST(LoopMargins, OfAnUnstableLoop) {
 
 // Tests a plant that is unstable alone, x(k+1) = 1.1 x(k) - gain x(k): gains from 0.1 to 2.1 hold it.
 TEST(LoopMargins, HaveALowerLimitWhereThePlantIsUnstable) {
-  const auto poles = [](double factor) { return std::vector<Phasor>{1.1 - factor * 0.5}; };
+  const auto poles = [](double factor) { return std::vector<Complex>{1.1 - factor * 0.5}; };
   const LoopMargins m = MarginsOf(poles, kPeriod);
   EXPECT_TRUE(m.stable);
   EXPECT_NEAR(m.least_gain, 0.2, 1e-9);
@@ -58,10 +59,10 @@ TEST(LoopMargins, HaveALowerLimitWhereThePlantIsUnstable) {
 
 // Tests that poles which the loop does not move count for stability only.
 TEST(LoopMargins, LeaveOutWhatTheLoopDoesNotMove) {
-  const auto with = [&](const Phasor& other) {
+  const auto with = [&](const Complex& other) {
     return MarginsOf(
         [other](double factor) {
-          std::vector<Phasor> poles = DelayedIntegrator(factor * 0.25);
+          std::vector<Complex> poles = DelayedIntegrator(factor * 0.25);
           poles.push_back(other);
           poles.push_back(std::conj(other));
           return poles;
@@ -78,10 +79,10 @@ TEST(LoopMargins, LeaveOutWhatTheLoopDoesNotMove) {
 
 // Tests the damping ratio of a pair of poles against the s plane.
 TEST(LoopMargins, Damping) {
-  const Phasor s = 40.0 * Phasor(-0.3, std::sqrt(1 - 0.09));
-  const Phasor z = std::exp(s * kPeriod);
+  const Complex s = 40.0 * Complex(-0.3, std::sqrt(1 - 0.09));
+  const Complex z = std::exp(s * kPeriod);
   const auto poles = [&](double factor) {
-    return factor == 0 ? std::vector<Phasor>{0.2, 0.3} : std::vector<Phasor>{z, std::conj(z)};
+    return factor == 0 ? std::vector<Complex>{0.2, 0.3} : std::vector<Complex>{z, std::conj(z)};
   };
   EXPECT_NEAR(MarginsOf(poles, kPeriod).damping_ratio, 0.3, 1e-12);
 }
@@ -89,9 +90,9 @@ TEST(LoopMargins, Damping) {
 // Tests the bandwidth against |T| of the delayed integrator, T = gain/(z^2 - z + gain), behind a filter.
 TEST(LoopMargins, Bandwidth) {
   const auto poles = [](double factor) { return DelayedIntegrator(factor * 0.25); };
-  const Filter filter = [](const Phasor& z) { return 0.5 / (z - 0.5); };
+  const Filter filter = [](const Complex& z) { return 0.5 / (z - 0.5); };
   const LoopMargins m = MarginsOf(poles, kPeriod, Drift::kCounts, filter);
-  const Phasor z = std::polar(1.0, 2 * std::numbers::pi * kPeriod * m.bandwidth_hz);
+  const Complex z = std::polar(1.0, 2 * std::numbers::pi * kPeriod * m.bandwidth_hz);
   EXPECT_NEAR(std::norm(filter(z) * 0.25 / (z * z - z + 0.25)), 0.5, 1e-6);
   EXPECT_GT(m.bandwidth_hz, 1);
   EXPECT_EQ(MarginsOf(poles, kPeriod).bandwidth_hz, 0);
@@ -100,7 +101,7 @@ TEST(LoopMargins, Bandwidth) {
 // Tests that a drift is ignored where it is somebody else's, and that what oscillates is not.
 TEST(LoopMargins, DriftMayBeIgnored) {
   const auto poles = [](double factor) {
-    std::vector<Phasor> all = DelayedIntegrator(factor * 0.25);
+    std::vector<Complex> all = DelayedIntegrator(factor * 0.25);
     all.emplace_back(1 + 0.001 * factor);
     return all;
   };
@@ -112,7 +113,7 @@ TEST(LoopMargins, DriftMayBeIgnored) {
   // is not.
   const auto swinging = [](double radius, double angle) {
     return [=](double factor) {
-      std::vector<Phasor> all = DelayedIntegrator(factor * 0.25);
+      std::vector<Complex> all = DelayedIntegrator(factor * 0.25);
       for (const double sign : {-1, 1}) all.push_back(std::polar(1 + factor * (radius - 1), sign * angle));
       return all;
     };
