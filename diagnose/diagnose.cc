@@ -49,27 +49,26 @@ void HoldOutLastThird(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* he
 // Whether one of the effect's parameters only adds to a base parameter that the model has. In that case the
 // base parameter may be wrong instead.
 bool IsTermOfTheModel(const model::EffectInfo& info, const model::Parameters& given) {
-  return std::any_of(info.parameters.begin(), info.parameters.end(),
-                     [&](const model::ParameterInfo& parameter) {
-                       return parameter.adds_to != nullptr && given.*parameter.adds_to != 0;
-                     });
+  return std::ranges::any_of(info.parameters, [&](const model::ParameterInfo& parameter) {
+    return parameter.adds_to != nullptr && given.*parameter.adds_to != 0;
+  });
 }
 
 // Whether some effect contains this base parameter's term. Where the model has the parameter at 0, the effect
 // then replaces it.
 bool IsTermOfAnEffect(const model::BaseParameter& base) {
   const std::vector<model::EffectInfo>& catalogue = model::EffectCatalogue();
-  return std::any_of(catalogue.begin(), catalogue.end(), [&](const model::EffectInfo& info) {
-    return std::any_of(
-        info.parameters.begin(), info.parameters.end(),
-        [&](const model::ParameterInfo& parameter) { return parameter.adds_to == base.member; });
+  return std::ranges::any_of(catalogue, [&](const model::EffectInfo& info) {
+    return std::ranges::any_of(info.parameters, [&](const model::ParameterInfo& parameter) {
+      return parameter.adds_to == base.member;
+    });
   });
 }
 
 bool IsMeasured(const std::string& channel, const std::vector<const RunData*>& runs) {
-  return std::any_of(runs.begin(), runs.end(), [&](const RunData* run) {
-    return std::any_of(run->signals.begin(), run->signals.end(),
-                       [&](const SignalData& signal) { return ChannelName(signal.channel) == channel; });
+  return std::ranges::any_of(runs, [&](const RunData* run) {
+    return std::ranges::any_of(
+        run->signals, [&](const SignalData& signal) { return ChannelName(signal.channel) == channel; });
   });
 }
 
@@ -121,7 +120,7 @@ bool IsExcluded(const Change& change, const model::ModelDescription& given) {
   model::EffectDescription effect{.id = change.effect, .parameters = {}, .names = change.names};
   for (const model::ParameterInfo& parameter : model::FindEffect(change.effect)->parameters)
     if (parameter.is_number()) effect.parameters[parameter.name] = parameter.example;
-  return std::any_of(given.effects.begin(), given.effects.end(), [&](const model::EffectDescription& own) {
+  return std::ranges::any_of(given.effects, [&](const model::EffectDescription& own) {
     return model::ExcludeEachOther(effect, own);
   });
 }
@@ -138,11 +137,10 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
     // A recorded temperature counts as a request.
     const bool on_request = info.on_request && !info.needs_temperature;
     if ((on_request || (info.of_bare_motors && oil)) && allowed.empty()) continue;
-    if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
+    if (!allowed.empty() && std::ranges::find(allowed, info.id) == allowed.end()) continue;
     if (IsTermOfTheModel(info, given.parameters)) continue;
-    const bool has =
-        std::any_of(given.effects.begin(), given.effects.end(),
-                    [&](const model::EffectDescription& effect) { return effect.id == info.id; });
+    const bool has = std::ranges::any_of(
+        given.effects, [&](const model::EffectDescription& effect) { return effect.id == info.id; });
     if (has) continue;
     std::vector<Change> variants = Variants(info, runs);
     std::erase_if(variants, [&](const Change& change) { return IsExcluded(change, given); });
@@ -156,8 +154,8 @@ std::string RemarkOnRequests(const model::ModelDescription& given, const std::ve
                              const std::vector<const RunData*>& runs) {
   std::vector<std::string> left;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
-    const bool tried = std::any_of(changes.begin(), changes.end(),
-                                   [&](const Change& change) { return change.effect == info.id; });
+    const bool tried =
+        std::ranges::any_of(changes, [&](const Change& change) { return change.effect == info.id; });
     if (!tried && !EffectChanges(given, {info.id}, runs).empty()) left.push_back(info.id);
   }
   if (left.empty()) return "";
@@ -171,7 +169,7 @@ std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std:
   std::vector<size_t> allowed;
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
     const model::BaseParameter& base = model::BaseParameters()[i];
-    const bool asked = std::find(names.begin(), names.end(), base.info.name) != names.end();
+    const bool asked = std::ranges::find(names, base.info.name) != names.end();
     const bool otherwise =
         !IsYardstick(base.member, runs) && (given.parameters.*base.member != 0 || !IsTermOfAnEffect(base));
     if (names.empty() ? otherwise : asked) allowed.push_back(i);

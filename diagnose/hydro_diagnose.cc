@@ -194,7 +194,7 @@ void RequireFilesKept(const DiagnoseRequest& request) {
 
 // Whether the runs are of a motor alone: the bypass is open in all of them, and none has pressures.
 bool IsMotorAlone(const std::vector<runs::MeasuredRun>& runs) {
-  return !runs.empty() && std::all_of(runs.begin(), runs.end(), [](const runs::MeasuredRun& run) {
+  return !runs.empty() && std::ranges::all_of(runs, [](const runs::MeasuredRun& run) {
     return run.bypass && !run.p1.measured() && !run.p2.measured();
   });
 }
@@ -202,8 +202,7 @@ bool IsMotorAlone(const std::vector<runs::MeasuredRun>& runs) {
 // The effects of --effect are looked for beside those of a list.
 void AddOwnIds(std::vector<std::string>* ids) {
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
-    if (!model::IsBuiltIn(info.id) && std::find(ids->begin(), ids->end(), info.id) == ids->end())
-      ids->push_back(info.id);
+    if (!model::IsBuiltIn(info.id) && std::ranges::find(*ids, info.id) == ids->end()) ids->push_back(info.id);
   }
 }
 
@@ -211,7 +210,7 @@ void AddOwnIds(std::vector<std::string>* ids) {
 std::vector<std::string> SplitPerRun(const std::string& text) {
   const auto measures = [](const std::string& name) { return name == "k_1" || name == "k_2"; };
   std::vector<std::string> names = SplitNames("--per-run", text);
-  const auto found = std::find_if(names.begin(), names.end(), measures);
+  const auto found = std::ranges::find_if(names, measures);
   if (found == names.end()) return names;
   std::vector<std::string> allowed;
   for (const model::BaseParameter& parameter : model::BaseParameters()) {
@@ -322,7 +321,7 @@ std::vector<std::string> ReadEffectList(const std::string& file) {
       throw document.Error("effects", "the unknown effect " + Quoted(item.text),
                            QuotedList(known) + DidYouMean(item.text, known));
     }
-    if (std::find(ids.begin(), ids.end(), item.text) == ids.end()) ids.push_back(item.text);
+    if (std::ranges::find(ids, item.text) == ids.end()) ids.push_back(item.text);
   }
   return ids;
 }
@@ -335,11 +334,11 @@ std::vector<std::string> SplitNames(const std::string& option, const std::string
     const size_t end = std::min(names.find(',', begin), names.size());
     const std::string name = names.substr(begin, end - begin);
     begin = end + 1;
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
+    if (std::ranges::find(known, name) == known.end()) {
       throw InputError(option + ": found " + Quoted(name) + ", allowed names separated by commas, of " +
                        QuotedList(known) + DidYouMean(name, known));
     }
-    if (std::find(free.begin(), free.end(), name) == free.end()) free.push_back(name);
+    if (std::ranges::find(free, name) == free.end()) free.push_back(name);
   }
   return free;
 }

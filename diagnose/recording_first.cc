@@ -24,42 +24,40 @@ constexpr char kSign[] = "sensor.sign";
 
 // Whether only the signs of single sensors are wrong, which the catalogue has as an effect.
 bool OnlySigns(const std::vector<RecordingFinding>& findings) {
-  return std::all_of(findings.begin(), findings.end(), [](const RecordingFinding& finding) {
+  return std::ranges::all_of(findings, [](const RecordingFinding& finding) {
     return finding.mistakes.size() == 1 && !finding.mistakes[0].InvertedSensor().empty();
   });
 }
 
 bool OnlyUnknownUnits(const std::vector<RecordingFinding>& findings) {
-  return std::all_of(findings.begin(), findings.end(), [](const RecordingFinding& finding) {
-    return std::all_of(finding.mistakes.begin(), finding.mistakes.end(),
-                       [](const RecordingMistake& mistake) { return mistake.IsOfUnknownUnit(); });
+  return std::ranges::all_of(findings, [](const RecordingFinding& finding) {
+    return std::ranges::all_of(finding.mistakes,
+                               [](const RecordingMistake& mistake) { return mistake.IsOfUnknownUnit(); });
   });
 }
 
 bool MayHave(const RecordingMistake& mistake, const std::vector<RecordingMistake>& possible) {
-  return mistake.shaft.has_value() || std::find(possible.begin(), possible.end(), mistake) != possible.end();
+  return mistake.shaft.has_value() || std::ranges::find(possible, mistake) != possible.end();
 }
 
 // The number of runs with at least one of these mistakes.
 size_t RunsWith(const std::vector<RecordingMistake>& mistakes,
                 const std::vector<RecordingFinding>& findings) {
-  return static_cast<size_t>(
-      std::count_if(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
-        return std::any_of(mistakes.begin(), mistakes.end(), [&](const RecordingMistake& mistake) {
-          return std::find(finding.mistakes.begin(), finding.mistakes.end(), mistake) !=
-                 finding.mistakes.end();
-        });
-      }));
+  return static_cast<size_t>(std::ranges::count_if(findings, [&](const RecordingFinding& finding) {
+    return std::ranges::any_of(mistakes, [&](const RecordingMistake& mistake) {
+      return std::ranges::find(finding.mistakes, mistake) != finding.mistakes.end();
+    });
+  }));
 }
 
 // The number of runs that may have these mistakes: a run whose arm moves may have its angle in degrees, for
 // example; a clamped one cannot.
 size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
                        const std::vector<runs::MeasuredRun>& runs) {
-  return static_cast<size_t>(std::count_if(runs.begin(), runs.end(), [&](const runs::MeasuredRun& run) {
+  return static_cast<size_t>(std::ranges::count_if(runs, [&](const runs::MeasuredRun& run) {
     const std::vector<RecordingMistake> possible = PossibleMistakes(run);
-    return std::all_of(mistakes.begin(), mistakes.end(),
-                       [&](const RecordingMistake& mistake) { return MayHave(mistake, possible); });
+    return std::ranges::all_of(mistakes,
+                               [&](const RecordingMistake& mistake) { return MayHave(mistake, possible); });
   }));
 }
 
@@ -198,11 +196,10 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   checked.mistakes = contradictions;
   std::vector<std::string>& said = OnlyUnknownUnits(findings) ? checked.factors : checked.mistakes;
   for (std::string& remark : FindingRemarks(findings, all)) said.push_back(std::move(remark));
-  const bool may_name_signs =
-      effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
+  const bool may_name_signs = effects.empty() || std::ranges::find(effects, kSign) != effects.end();
   // A recorder's mistake appears in most of its runs. A mistake in a single run may have another cause: it is
   // reported, and the search continues.
-  const bool most = std::any_of(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
+  const bool most = std::ranges::any_of(findings, [&](const RecordingFinding& finding) {
     return 2 * RunsWith(finding.mistakes, findings) >= RunsThatMayHave(finding.mistakes, all);
   });
   checked.mend_first = !contradictions.empty() || (!findings.empty() && most && !OnlyUnknownUnits(findings) &&
@@ -210,7 +207,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   if (!checked.mend_first && most && OnlySigns(findings)) {
     for (const RecordingFinding& finding : findings) {
       const std::string sensor = finding.mistakes[0].InvertedSensor();
-      if (std::find(checked.inverted.begin(), checked.inverted.end(), sensor) == checked.inverted.end())
+      if (std::ranges::find(checked.inverted, sensor) == checked.inverted.end())
         checked.inverted.push_back(sensor);
     }
   }
@@ -247,8 +244,8 @@ void AddChecked(const CheckedRecordings& checked, Diagnosis* diagnosis) {
         "Mend the recording first: " + checked.commands.late.front() + ". " + diagnosis->sentence;
   if (checked.mistakes.empty()) return;
   diagnosis->sentence = MendFirstSentence(checked) + " " + diagnosis->sentence;
-  const bool named = std::any_of(diagnosis->effects.begin(), diagnosis->effects.end(),
-                                 [](const FoundEffect& effect) { return effect.id == kSign; });
+  const bool named =
+      std::ranges::any_of(diagnosis->effects, [](const FoundEffect& effect) { return effect.id == kSign; });
   if (!named) diagnosis->verdict = Verdict::kUnexplained;
 }
 

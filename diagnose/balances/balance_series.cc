@@ -4,7 +4,6 @@
 #include <limits>
 
 namespace hydro::diagnose {
-
 namespace {
 
 size_t Place(BalanceKind balance) { return static_cast<size_t>(balance); }
@@ -231,7 +230,7 @@ SignalErrors ErrorsOf(const model::ModelDescription& model, const RunMotion& run
     for (size_t s = 0; s < kGridChannels; ++s) errors.of[s][k] = values[s];
   });
   for (std::vector<double>& of : errors.of) {
-    if (std::all_of(of.begin(), of.end(), [](double value) { return value == 0; })) of.clear();
+    if (std::ranges::all_of(of, [](double value) { return value == 0; })) of.clear();
   }
   return errors;
 }

@@ -7,7 +7,6 @@
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using model::BaseParameters;
@@ -75,12 +74,11 @@ void AddAskedRuns(ColumnMaker* maker, int of) {
   const ScanColumn column = maker->table.columns[static_cast<size_t>(of)];
   const std::vector<std::string>& asked = maker->setup->per_run;
   ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(of)];
-  const bool differs =
-      std::any_of(maker->table.columns.begin(), maker->table.columns.end(),
-                  [&](const ScanColumn& one) { return one.name.starts_with(column.name + "["); });
+  const bool differs = std::ranges::any_of(
+      maker->table.columns, [&](const ScanColumn& one) { return one.name.starts_with(column.name + "["); });
   if (meaning.kind != ColumnMeaning::Kind::kBase || meaning.run >= 0 || !column.set.empty() || differs)
     return;
-  if (std::find(asked.begin(), asked.end(), column.name) == asked.end()) return;
+  if (std::ranges::find(asked, column.name) == asked.end()) return;
   for (size_t r = 0; r < maker->runs->size(); ++r) {
     meaning.run = static_cast<int>(r);
     maker->AddAlias({"run." + column.name + "[" + std::to_string(r) + "]", "run." + column.name,

@@ -9,7 +9,6 @@
 #include "diagnose/balances/column_maker.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using ElementPart = ClosureElement::Part;

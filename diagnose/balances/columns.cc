@@ -9,7 +9,6 @@
 #include "diagnose/balances/latent_pressures.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The quantile that counts as the largest speed: a motor reaches it now and then, not just once.

@@ -7,7 +7,6 @@
 #include "diagnose/balances/column_maker.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using VariantKind = EffectVariant::Kind;

@@ -8,7 +8,6 @@
 #include "model/effects/effect.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using model::ParameterInfo;
@@ -28,11 +27,11 @@ bool IsWave(const ParameterInfo& parameter) {
 bool IsSize(const ParameterInfo& parameter) {
   const bool allows_0 = parameter.min < 0 || (parameter.min == 0 && parameter.min_allowed);
   return parameter.is_number() && parameter.role == Role::kSize && allows_0 &&
-         std::find(parameter.starts.begin(), parameter.starts.end(), 0.0) != parameter.starts.end();
+         std::ranges::find(parameter.starts, 0.0) != parameter.starts.end();
 }
 
 std::vector<double> Denser(std::vector<double> grid) {
-  std::sort(grid.begin(), grid.end());
+  std::ranges::sort(grid);
   std::vector<double> dense;
   for (const double value : grid) {
     if (!dense.empty() && dense.back() > 0) {
@@ -74,8 +73,7 @@ std::vector<EffectVariant> OnGrid(const EffectVariant& from, const model::Effect
                                   const Sizes& sizes) {
   size_t shapes = 0;
   for (const ParameterInfo& parameter : info.parameters) {
-    const bool amount =
-        std::find(from.amounts.begin(), from.amounts.end(), parameter.name) != from.amounts.end();
+    const bool amount = std::ranges::find(from.amounts, parameter.name) != from.amounts.end();
     shapes += parameter.is_number() && IsFitted(info, parameter) && !amount ? 1 : 0;
   }
   std::vector<EffectVariant> variants = {from};
@@ -110,8 +108,8 @@ EffectVariant Open(const Change& change, const model::EffectInfo& info) {
   variant.at.names = change.names;
   variant.set = change.effect;
   for (const auto& [parameter, name] : change.names) variant.set += "(" + name + ")";
-  const bool channel = std::any_of(info.parameters.begin(), info.parameters.end(),
-                                   [](const ParameterInfo& one) { return one.role == Role::kChannel; });
+  const bool channel = std::ranges::any_of(
+      info.parameters, [](const ParameterInfo& one) { return one.role == Role::kChannel; });
   for (const ParameterInfo& parameter : info.parameters) {
     if (IsWave(parameter)) variant.kind = EffectVariant::Kind::kWave;
     if (parameter.role == Role::kPhase) variant.phase = parameter.name;
@@ -153,10 +151,10 @@ std::vector<EffectVariant> VariantsOf(const std::vector<Change>& changes, const 
   for (const Change& change : changes) {
     const model::EffectInfo* info = change.effect.empty() ? nullptr : InfoOf(change.effect);
     if (info == nullptr) continue;
-    const bool lists = std::any_of(info->parameters.begin(), info->parameters.end(),
-                                   [](const ParameterInfo& one) { return one.list != model::List::kNone; });
-    const bool numbers = std::any_of(info->parameters.begin(), info->parameters.end(),
-                                     [](const ParameterInfo& one) { return one.is_number(); });
+    const bool lists = std::ranges::any_of(
+        info->parameters, [](const ParameterInfo& one) { return one.list != model::List::kNone; });
+    const bool numbers =
+        std::ranges::any_of(info->parameters, [](const ParameterInfo& one) { return one.is_number(); });
     if (lists || !numbers) continue;
     const EffectVariant open = Open(change, *info);
     if (open.kind == EffectVariant::Kind::kWave) {

@@ -6,7 +6,6 @@
 #include "base/maths/spread.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using model::KnownMotion;

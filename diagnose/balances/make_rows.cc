@@ -15,7 +15,6 @@
 #include "model/terms/model_error.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The arm moves more slowly, and its balance has a second derivative.
@@ -87,7 +86,7 @@ void SetPrior(const ColumnSetup& setup, const std::vector<ColumnMeaning>& meanin
   const auto member_of = [](const ColumnMeaning& one) { return model::BaseParameters()[one.base].member; };
   for (Eigen::Index i = 0; i < count; ++i) {
     const ColumnMeaning& a = meaning[static_cast<size_t>(i)];
-    if (std::find(rows->base.begin(), rows->base.end(), static_cast<int>(i)) == rows->base.end()) continue;
+    if (std::ranges::find(rows->base, static_cast<int>(i)) == rows->base.end()) continue;
     for (const int j : rows->base) {
       const ColumnMeaning& b = meaning[static_cast<size_t>(j)];
       double Parameters::*of = yardstick(member_of(a));
@@ -130,7 +129,7 @@ int MainColumn(const Rows& rows, BalanceKind balance) {
 
 // The position of a column's values in a block; null: the column is 0 there.
 const double* ColumnIn(const RowBlock& block, int column) {
-  const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
+  const auto found = std::ranges::lower_bound(block.columns, column);
   if (found == block.columns.end() || *found != column) return nullptr;
   return block.X.col(found - block.columns.begin()).data();
 }
@@ -155,7 +154,7 @@ bool IsDouble(const Rows& rows, int column, int other, double apart) {
 
 void SetToZero(int column, Rows* rows) {
   for (RowBlock& block : rows->blocks) {
-    const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
+    const auto found = std::ranges::lower_bound(block.columns, column);
     if (found == block.columns.end() || *found != column) continue;
     block.X.col(found - block.columns.begin()).setZero();
     block.noise_X.col(found - block.columns.begin()).setZero();
@@ -192,7 +191,7 @@ std::vector<std::pair<std::string, std::string>> TakeOutDoubles(bool one_way, Ro
     if (columns.size() != 1 && !one_way) continue;
     std::vector<std::string> values;
     for (const int column : columns) {
-      const auto base = std::find_if(rows->base.begin(), rows->base.end(), [&](int one) {
+      const auto base = std::ranges::find_if(rows->base, [&](int one) {
         // The torque limit acts in the few rows at the limit, and stands for no other effect.
         if (rows->columns[static_cast<size_t>(one)].name == "T_pmax") return false;
         return IsDouble(*rows, column, one, one_way ? kSameOneWay : kSame);
@@ -334,16 +333,15 @@ void ScanRuns::Project(const ColumnTable& clean, const ColumnTable& noisy, Rows*
 }
 
 bool ScanRuns::HasLatent() const {
-  return std::any_of(motions_.begin(), motions_.end(),
-                     [](const RunMotion& run) { return !run.slopes.empty(); });
+  return std::ranges::any_of(motions_, [](const RunMotion& run) { return !run.slopes.empty(); });
 }
 
 std::set<std::string> ScanRuns::OilOnly() const {
   std::set<std::string> oil, direct;
   for (size_t i = 0; i < clean_.columns.size(); ++i) {
-    const bool somewhere = std::any_of(clean_.series.begin(), clean_.series.end(), [&](const auto& run) {
-      return std::any_of(run.begin(), run.end(),
-                         [&](const auto& balance) { return balance.contains(static_cast<int>(i)); });
+    const bool somewhere = std::ranges::any_of(clean_.series, [&](const auto& run) {
+      return std::ranges::any_of(run,
+                                 [&](const auto& balance) { return balance.contains(static_cast<int>(i)); });
     });
     if (somewhere && !clean_.columns[i].set.empty())
       (clean_.direct[i] ? direct : oil).insert(clean_.columns[i].set);

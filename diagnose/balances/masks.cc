@@ -8,7 +8,6 @@
 #include "diagnose/balances/test_functions.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // s: the pump is at rest where noise hides its speed for this long. A shorter rest is a reversal.

@@ -8,7 +8,6 @@
 #include "diagnose/balances/latent_pressures.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // s: delay of channels in addition to half a sample, due to anti-alias filters and conversion.

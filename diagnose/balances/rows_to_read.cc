@@ -9,7 +9,6 @@
 #include "diagnose/recording/sample_interval.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Estimates of one sensor's noise from several runs are within 5 % of each other, unless it mostly rests.

@@ -10,7 +10,6 @@
 #include "diagnose/recording/second_sensors.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using std::numbers::sqrt2;
@@ -324,8 +323,7 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given, const Rea
     motion.signals[s].noise = std::max(motion.signals[s].noise, as.least_noise[s]);
   }
   for (size_t s = 0; s < kGridChannels; ++s) {
-    if (std::find(as.inverted.begin(), as.inverted.end(), ChannelName(kChannelOf[s])) == as.inverted.end())
-      continue;
+    if (std::ranges::find(as.inverted, ChannelName(kChannelOf[s])) == as.inverted.end()) continue;
     for (double& value : motion.signals[s].values) value = -value;
   }
   motion.pressures = !run.stimulus.bypass && motion.Of(GridChannel::kP1).measured() &&

@@ -7,7 +7,6 @@
 #include <utility>
 
 namespace hydro::diagnose {
-
 namespace {
 
 using std::numbers::pi;

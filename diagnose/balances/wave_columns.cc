@@ -7,7 +7,6 @@
 #include "model/effects/catalogue.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The effect with its wave fixed at its crest.

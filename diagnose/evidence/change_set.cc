@@ -7,7 +7,6 @@
 #include "diagnose/fit/closure.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // A curve without a known cause is named only where no effect will do, because a curve can imitate most
@@ -23,23 +22,22 @@ std::string_view ChangeOf(std::string_view name) { return name.substr(0, name.fi
 ChangeSet ChangesOf(const ChangeSet& set) {
   ChangeSet changes;
   for (const std::string& name : set) changes.emplace_back(ChangeOf(name));
-  std::sort(changes.begin(), changes.end());
+  std::ranges::sort(changes);
   return changes;
 }
 
 bool IsMissingTerm(std::string_view name) { return !name.starts_with("value.") && !name.starts_with("run."); }
 
-bool HasCurve(const ChangeSet& set) { return std::any_of(set.begin(), set.end(), IsClosureEffect); }
+bool HasCurve(const ChangeSet& set) { return std::ranges::any_of(set, IsClosureEffect); }
 
 ChangeSet WithChange(const ChangeSet& set, const std::string& name) {
   ChangeSet with = set;
-  with.insert(std::lower_bound(with.begin(), with.end(), name), name);
+  with.insert(std::ranges::lower_bound(with, name), name);
   return with;
 }
 
 bool HasChange(const ChangeSet& set, std::string_view name) {
-  return std::any_of(set.begin(), set.end(),
-                     [&](const std::string& one) { return ChangeOf(one) == ChangeOf(name); });
+  return std::ranges::any_of(set, [&](const std::string& one) { return ChangeOf(one) == ChangeOf(name); });
 }
 
 ChangeOdds::ChangeOdds(const std::vector<std::string>& names) {

@@ -39,8 +39,7 @@ std::string Text(const Range& range, const std::string& unit, size_t missing) {
 }
 
 size_t MissingIn(const std::vector<double>& values) {
-  return static_cast<size_t>(
-      std::count_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
+  return static_cast<size_t>(std::ranges::count_if(values, [](double value) { return std::isnan(value); }));
 }
 
 class RunChecklist {
@@ -237,7 +236,7 @@ class RunChecklist {
   // How much better the balances close with a mistake undone; nothing where the mistake is not possible.
   std::optional<double> GainOf(const IsMistake& is_mistake) const {
     const std::vector<RecordingMistake> possible = PossibleMistakes(run_);
-    const auto mistake = std::find_if(possible.begin(), possible.end(), is_mistake);
+    const auto mistake = std::ranges::find_if(possible, is_mistake);
     if (mistake == possible.end()) return std::nullopt;
     return mistakes_.Try({*mistake}).gain;
   }

@@ -13,7 +13,6 @@
 #include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using Run = runs::MeasuredRun;

@@ -7,7 +7,6 @@
 #include "diagnose/balances/closure_elements.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Enough for two knots in each half of a curve's shortest wave.

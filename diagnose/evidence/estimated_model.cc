@@ -11,7 +11,6 @@
 #include "model/effects/catalogue.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using model::Parameters;
@@ -25,8 +24,8 @@ constexpr double kMoveStep = 0.1;
 // Whether any balance of the runs has the column. A column that no balance has may still seem to move,
 // together with others that share its yardstick.
 bool Acts(const Rows& rows, int column) {
-  return std::any_of(rows.blocks.begin(), rows.blocks.end(), [&](const RowBlock& block) {
-    const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
+  return std::ranges::any_of(rows.blocks, [&](const RowBlock& block) {
+    const auto found = std::ranges::lower_bound(block.columns, column);
     if (found == block.columns.end() || *found != column) return false;
     return block.X.col(found - block.columns.begin()).squaredNorm() > 0;
   });

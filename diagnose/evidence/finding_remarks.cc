@@ -34,16 +34,15 @@ struct Remark {
 
 // "in run1.toml and run2.toml, under [columns],"
 std::string Where(const std::vector<std::string>& sidecars, const Mistakes& mistakes) {
-  const bool columns = std::any_of(mistakes.begin(), mistakes.end(), [](const RecordingMistake& mistake) {
-    return !mistake.shaft.has_value();
-  });
+  const bool columns = std::ranges::any_of(
+      mistakes, [](const RecordingMistake& mistake) { return !mistake.shaft.has_value(); });
   return "in " + (sidecars.empty() ? "the sidecar" : Enumerated(sidecars)) +
          (columns ? ", under [columns]," : "");
 }
 
 // Units and a value of the model look alike where the same terms of a balance are too large.
 bool HasAFactor(const Mistakes& mistakes) {
-  return std::any_of(mistakes.begin(), mistakes.end(), [](const RecordingMistake& mistake) {
+  return std::ranges::any_of(mistakes, [](const RecordingMistake& mistake) {
     return !mistake.IsSign() && !mistake.factors.empty();
   });
 }
@@ -73,7 +72,7 @@ std::string Text(const Remark& remark) {
 }
 
 void AddOnce(const std::string& text, std::vector<std::string>* list) {
-  if (!text.empty() && std::find(list->begin(), list->end(), text) == list->end()) list->push_back(text);
+  if (!text.empty() && std::ranges::find(*list, text) == list->end()) list->push_back(text);
 }
 
 }  // namespace
@@ -88,20 +87,18 @@ std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& fin
       std::string lines = SidecarLines(other, run);
       const bool same =
           !lines.empty() && lines == next.lines;  // signs of two sensors, separately or together
-      if (same || std::find(next.tied_lines.begin(), next.tied_lines.end(), lines) != next.tied_lines.end())
-        continue;
+      if (same || std::ranges::find(next.tied_lines, lines) != next.tied_lines.end()) continue;
       next.tied.push_back(other);
       next.tied_lines.push_back(std::move(lines));
     }
     const std::string sidecar = std::filesystem::path(run.sidecar).filename().string();
-    const auto same = std::find_if(remarks.begin(), remarks.end(),
-                                   [&](const Remark& remark) { return remark.Takes(next); });
+    const auto same = std::ranges::find_if(remarks, [&](const Remark& remark) { return remark.Takes(next); });
     Remark& remark = same == remarks.end() ? remarks.emplace_back(std::move(next)) : *same;
     if (same != remarks.end() && remark.names.back() != run.name) remark.names.push_back(run.name);
     AddOnce(sidecar, &remark.sidecars);
   }
   // The remark that says most comes first.
-  std::stable_sort(remarks.begin(), remarks.end(), [](const Remark& a, const Remark& b) {
+  std::ranges::stable_sort(remarks, [](const Remark& a, const Remark& b) {
     return a.finding->mistakes.size() > b.finding->mistakes.size();
   });
   std::vector<std::string> lines;

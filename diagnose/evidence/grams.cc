@@ -9,7 +9,6 @@
 #include "model/terms/model_error.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using Eigen::Index;
@@ -77,7 +76,7 @@ class BlockOfGrams {
 
   // The position of a column among those of the block, or -1.
   Index Place(int column) const {
-    const auto at = std::lower_bound(block_.columns.begin(), block_.columns.end(), column);
+    const auto at = std::ranges::lower_bound(block_.columns, column);
     return at != block_.columns.end() && *at == column ? at - block_.columns.begin() : -1;
   }
 

@@ -63,7 +63,7 @@ VectorXd Against(const SetFit& fit, const Rows& rows, const std::string& one,
   for (size_t i = 0; i < fit.columns.size(); ++i) {
     const std::string& name = rows.columns[static_cast<size_t>(fit.columns[i])].name;
     if (name == one) weights[static_cast<Eigen::Index>(i)] = 1;
-    if (std::find(others.begin(), others.end(), name) != others.end())
+    if (std::ranges::find(others, name) != others.end())
       weights[static_cast<Eigen::Index>(i)] = -1.0 / static_cast<double>(others.size());
   }
   return weights;
@@ -91,9 +91,8 @@ std::optional<LateCommand> LateIn(const model::ModelDescription& given, const Ru
   options.only_always = true;
   ScanRuns scanned(given, {&data}, options);
   Rows rows = scanned.MakeRows({});
-  const bool torque = std::any_of(rows.blocks.begin(), rows.blocks.end(), [](const RowBlock& block) {
-    return block.balance == BalanceKind::kTorque;
-  });
+  const bool torque = std::ranges::any_of(
+      rows.blocks, [](const RowBlock& block) { return block.balance == BalanceKind::kTorque; });
   if (!torque) return std::nullopt;
   FreeBaseValues(&rows);
   for (size_t i = 0; i < rows.columns.size(); ++i) {
@@ -144,7 +143,7 @@ std::string LineFor(const std::vector<Run>& runs, int moved) {
   for (const Run& run : runs) {
     names.push_back(run.name);
     const std::string name = run.sidecar.substr(run.sidecar.find_last_of('/') + 1);
-    if (std::find(sidecars.begin(), sidecars.end(), name) == sidecars.end()) sidecars.push_back(name);
+    if (std::ranges::find(sidecars, name) == sidecars.end()) sidecars.push_back(name);
   }
   runs::ColumnSource moved_source = runs.front().voltage.source;
   moved_source.delay += moved * MedianInterval(runs.front().time);
@@ -210,7 +209,7 @@ CommandRemarks RemarksOnCommands(const model::ModelDescription& given, const std
   for (const Run& whole : runs) {
     if (!CanTellRows(whole)) continue;
     const Run run = BusiestStretch(whole, each);
-    const auto same = std::find_if(recorders.begin(), recorders.end(), [&](const std::vector<Run>& one) {
+    const auto same = std::ranges::find_if(recorders, [&](const std::vector<Run>& one) {
       const double interval = MedianInterval(one.front().time);
       const bool as_fast = std::abs(MedianInterval(run.time) - interval) < kSameInterval * interval;
       return as_fast && one.front().voltage.source.column == run.voltage.source.column &&

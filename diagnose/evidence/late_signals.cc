@@ -14,7 +14,6 @@
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using Eigen::Index;
@@ -131,8 +130,8 @@ class ClockSteps {
     Run moved = run_;
     runs::RemoveDelays(OfSignals(moved_), &moved);
     const double from = run_.time.front() + reach_, to = run_.time.back() - reach_;
-    const auto first = std::lower_bound(moved.time.begin(), moved.time.end(), from - 0.5 * step_);
-    const auto last = std::upper_bound(moved.time.begin(), moved.time.end(), to + 0.5 * step_);
+    const auto first = std::ranges::lower_bound(moved.time, from - 0.5 * step_);
+    const auto last = std::ranges::upper_bound(moved.time, to + 0.5 * step_);
     moved.Keep(static_cast<size_t>(first - moved.time.begin()),
                static_cast<size_t>(last - moved.time.begin()));
     return PrepareRun(std::move(moved), given_);
@@ -150,9 +149,8 @@ class ClockSteps {
     FreeBaseValues(&rows);
     std::vector<int> columns;
     for (const Late late : late_) {
-      const auto found =
-          std::find_if(rows.columns.begin(), rows.columns.end(),
-                       [&](const ScanColumn& column) { return column.name == ColumnOf(late); });
+      const auto found = std::ranges::find_if(
+          rows.columns, [&](const ScanColumn& column) { return column.name == ColumnOf(late); });
       const int column = static_cast<int>(found - rows.columns.begin());
       columns.push_back(found == rows.columns.end() ? -1 : column);
     }
@@ -169,7 +167,7 @@ class ClockSteps {
     for (size_t i = 0; i < late_.size(); ++i) {
       const auto k = static_cast<Index>(i);
       moved[k] = moved_[static_cast<size_t>(late_[i])];
-      const auto at = std::find(fit.columns.begin(), fit.columns.end(), columns[i]);
+      const auto at = std::ranges::find(fit.columns, columns[i]);
       const bool there = at != fit.columns.end() && columns[i] >= 0;
       const auto place = static_cast<Index>(at - fit.columns.begin());
       if (there) more[k] = fit.amounts[place];

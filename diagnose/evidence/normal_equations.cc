@@ -54,7 +54,7 @@ NormalEquations::NormalEquations(const std::vector<PlacedBlock>& blocks, Index a
     std::vector<Placed>& placed = changes_.emplace_back();
     const std::vector<int>& own = block.grams->changes;
     for (size_t i = 0; i < changes.size(); ++i) {
-      const auto at = std::lower_bound(own.begin(), own.end(), changes[i]);
+      const auto at = std::ranges::lower_bound(own, changes[i]);
       if (at == own.end() || *at != changes[i]) continue;
       // y stands between the columns of every hypothesis and the others.
       placed.emplace_back(static_cast<Index>(block.always.size()) + 1 + (at - own.begin()),

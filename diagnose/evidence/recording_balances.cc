@@ -154,7 +154,7 @@ class BalanceMaker {
       Factors factors;
       AddFactors(mistake, &factors);
       const double size = std::abs(factors.*signal);
-      if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
+      if (std::ranges::find(sizes, size) == sizes.end()) sizes.push_back(size);
     }
     return sizes;
   }

@@ -34,9 +34,8 @@ size_t LargestOf(const std::vector<std::vector<MistakeTrial>>& trials, size_t se
 }
 
 bool Includes(const Mistakes& all, const Mistakes& some) {
-  return std::all_of(some.begin(), some.end(), [&](const RecordingMistake& one) {
-    return std::find(all.begin(), all.end(), one) != all.end();
-  });
+  return std::ranges::all_of(
+      some, [&](const RecordingMistake& one) { return std::ranges::find(all, one) != all.end(); });
 }
 
 // What all runs say about the same sets of mistakes.
@@ -93,9 +92,8 @@ class Recorder {
   std::vector<RecordingFinding> UnknownFactors(int jobs) const {
     std::vector<Mistakes> factors;
     for (const std::vector<SignalOfRun>& signals : kQuantities) {
-      const bool measured = std::any_of(runs_.begin(), runs_.end(), [&](const Run& run) {
-        return std::all_of(signals.begin(), signals.end(),
-                           [&](SignalOfRun signal) { return (run.*signal).measured(); });
+      const bool measured = std::ranges::any_of(runs_, [&](const Run& run) {
+        return std::ranges::all_of(signals, [&](SignalOfRun signal) { return (run.*signal).measured(); });
       });
       for (double size = kLeastFactor; measured && size < kMostFactor; size *= kFactorStep) {
         for (const double factor : {size, 1 / size}) factors.push_back({UnknownUnit(signals, factor)});
@@ -137,8 +135,7 @@ class Recorder {
 
  private:
   void Add(const Mistakes& mistakes) {
-    if (!mistakes.empty() && std::find(sets_.begin(), sets_.end(), mistakes) == sets_.end())
-      sets_.push_back(mistakes);
+    if (!mistakes.empty() && std::ranges::find(sets_, mistakes) == sets_.end()) sets_.push_back(mistakes);
   }
 
   // The set of mistakes that all runs together support, and at least one by itself. One recorder makes one
@@ -164,9 +161,8 @@ class Recorder {
     std::vector<Mistakes> tied;
     for (size_t s = 0; s < sets_.size(); ++s) {
       const bool larger = sets_[s].size() > sets_[set].size() + 1 || Includes(sets_[s], sets_[set]);
-      const bool alike = std::all_of(trials_.begin(), trials_.end(), [&](const auto& trials) {
-        return trials[set].gain - trials[s].gain < kAlikeMistakes;
-      });
+      const bool alike = std::ranges::all_of(
+          trials_, [&](const auto& trials) { return trials[set].gain - trials[s].gain < kAlikeMistakes; });
       if (s != set && !larger && alike && trials_[run][s].mistakes != trials_[run][set].mistakes)
         tied.push_back(trials_[run][s].mistakes);
     }
@@ -191,8 +187,8 @@ std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& mod
   std::vector<RecordingFinding> findings = recorder.Findings();
   if (findings.empty()) findings = recorder.UnknownFactors(jobs);
   for (size_t r = 0; unjudged != nullptr && r < runs.size(); ++r) {
-    const bool said = std::any_of(findings.begin(), findings.end(),
-                                  [r](const RecordingFinding& one) { return one.run == r; });
+    const bool said =
+        std::ranges::any_of(findings, [r](const RecordingFinding& one) { return one.run == r; });
     if (!said) recorder.Judge(r, unjudged);
   }
   return findings;

@@ -9,7 +9,6 @@
 #include "diagnose/evidence/set_evidence.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The distance between two neighbours on a grid is halved this often: to a thirtieth, which no balance shows.
@@ -19,7 +18,7 @@ constexpr int kMostStepsOfAWhole = 4;
 constexpr double kSettledShape = 0.01;
 
 bool IsOf(const ScanColumn& column, const ChangeSet& set) {
-  return std::find(set.begin(), set.end(), column.set) != set.end();
+  return std::ranges::find(set, column.set) != set.end();
 }
 
 // Keeps the columns of every hypothesis and of the set. The set's columns are in every block.
@@ -28,7 +27,7 @@ RowBlock OnlyOf(const RowBlock& block, const std::vector<ScanColumn>& columns, c
   only.columns.clear();
   std::vector<Eigen::Index> from;
   for (size_t i = 0; i < columns.size(); ++i) {
-    const auto at = std::lower_bound(block.columns.begin(), block.columns.end(), static_cast<int>(i));
+    const auto at = std::ranges::lower_bound(block.columns, static_cast<int>(i));
     const bool there = at != block.columns.end() && *at == static_cast<int>(i);
     if (!IsOf(columns[i], set) && (!columns[i].set.empty() || !there)) continue;
     only.columns.push_back(static_cast<int>(i));
@@ -52,16 +51,15 @@ Rows OnlyOf(const Rows& rows, const ChangeSet& set) {
 }
 
 const RowBlock* SameBlock(const Rows& rows, const RowBlock& block) {
-  const auto found = std::find_if(rows.blocks.begin(), rows.blocks.end(), [&](const RowBlock& one) {
-    return one.run == block.run && one.balance == block.balance;
-  });
+  const auto found = std::ranges::find_if(
+      rows.blocks, [&](const RowBlock& one) { return one.run == block.run && one.balance == block.balance; });
   return found == rows.blocks.end() ? nullptr : &*found;
 }
 
 // Copies a column of `from`, which has it, into the block.
 void SetColumn(const RowBlock& from, int column, RowBlock* block) {
   const auto place = [&](const RowBlock& of) {
-    return std::lower_bound(of.columns.begin(), of.columns.end(), column) - of.columns.begin();
+    return std::ranges::lower_bound(of.columns, column) - of.columns.begin();
   };
   const Eigen::Index to = place(*block), own = place(from);
   const bool there = to < block->X.cols() && block->columns[static_cast<size_t>(to)] == column;
@@ -137,7 +135,7 @@ double Top(double before, double here, double after, double width) {
 RefinedShapes::RefinedShapes(ScanRuns* runs, const Rows& rows, const ChangeSet& set) : runs_(runs) {
   const std::vector<EffectVariant> variants = runs->setup().variants;
   for (size_t v = 0; v < variants.size(); ++v) {
-    const bool wanted = std::find(set.begin(), set.end(), variants[v].set) != set.end();
+    const bool wanted = std::ranges::find(set, variants[v].set) != set.end();
     if (!wanted || variants[v].kind == EffectVariant::Kind::kWave || variants[v].shapes.empty()) continue;
     if (before_.empty()) {
       rows_ = OnlyOf(rows, set);
@@ -192,8 +190,8 @@ void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
         const bool shown = of_all.Shows({NameOf(i)});
         evidence[places[i]] = of_all.Log(shown ? WithChange(others, NameOf(i)) : others);
       }
-      return std::max_element(evidence.begin(), evidence.end(),
-                              [](const auto& a, const auto& b) { return a.second < b.second; })
+      return std::ranges::max_element(evidence,
+                                      [](const auto& a, const auto& b) { return a.second < b.second; })
           ->first;
     };
     const double middle = std::log(at.parameters.at(shape));
@@ -263,12 +261,11 @@ void RefinedShapes::Take(size_t variant, const ScanRuns::OtherShapes& shape,
   for (RowBlock& block : rows_.blocks) {
     const RowBlock* from = SameBlock(shape.rows, block);
     for (size_t i = 0; i < columns.size(); ++i) {
-      const Eigen::Index to =
-          std::lower_bound(block.columns.begin(), block.columns.end(), columns[i]) - block.columns.begin();
+      const Eigen::Index to = std::ranges::lower_bound(block.columns, columns[i]) - block.columns.begin();
       block.X.col(to).setZero();
       block.noise_X.col(to).setZero();
       if (from == nullptr) continue;
-      const auto found = std::lower_bound(from->columns.begin(), from->columns.end(), static_cast<int>(i));
+      const auto found = std::ranges::lower_bound(from->columns, static_cast<int>(i));
       if (found == from->columns.end() || *found != static_cast<int>(i)) continue;
       block.X.col(to) = from->X.col(found - from->columns.begin());
       block.noise_X.col(to) = from->noise_X.col(found - from->columns.begin());

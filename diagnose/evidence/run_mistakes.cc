@@ -32,8 +32,8 @@ bool Moves(const Run& run) {
 }
 
 bool IsPossible(const Mistakes& mistakes, const RecordingMistake& one) {
-  return std::none_of(mistakes.begin(), mistakes.end(),
-                      [&](const RecordingMistake& other) { return other == one || Exclude(other, one); });
+  return std::ranges::none_of(
+      mistakes, [&](const RecordingMistake& other) { return other == one || Exclude(other, one); });
 }
 
 // Whether other factors of the signals do not correct it.
@@ -95,7 +95,7 @@ double RunMistakes::Gain(const Mistakes& mistakes) const {
 MistakeTrial RunMistakes::Try(const Mistakes& mistakes) const {
   Mistakes own;
   std::copy_if(mistakes.begin(), mistakes.end(), std::back_inserter(own), [&](const RecordingMistake& one) {
-    return std::find(possible_.begin(), possible_.end(), one) != possible_.end();
+    return std::ranges::find(possible_, one) != possible_.end();
   });
   const double gain = Gain(own);
   return {std::move(own), gain};
@@ -114,19 +114,18 @@ std::vector<MistakeTrial> RunMistakes::Search(const std::function<bool()>& time_
         if (!IsPossible(one.mistakes, more)) continue;
         Mistakes set;  // in the order of the possible mistakes, so that each set occurs once
         for (const RecordingMistake& other : possible_) {
-          const bool in = other == more ||
-                          std::find(one.mistakes.begin(), one.mistakes.end(), other) != one.mistakes.end();
+          const bool in = other == more || std::ranges::find(one.mistakes, other) != one.mistakes.end();
           if (in) set.push_back(other);
         }
-        const bool known = std::any_of(next.begin(), next.end(),
-                                       [&](const MistakeTrial& trial) { return trial.mistakes == set; });
+        const bool known =
+            std::ranges::any_of(next, [&](const MistakeTrial& trial) { return trial.mistakes == set; });
         if (known) continue;
         const double gain = Gain(set);
         next.push_back({std::move(set), gain});
       }
     }
-    std::stable_sort(next.begin(), next.end(),
-                     [](const MistakeTrial& a, const MistakeTrial& b) { return a.gain > b.gain; });
+    std::ranges::stable_sort(next,
+                             [](const MistakeTrial& a, const MistakeTrial& b) { return a.gain > b.gain; });
     all.insert(all.end(), next.begin(), next.end());
     // Two mistakes may hide each other; a third has to add to the evidence.
     const bool brings = !next.empty() && next.front().Merit() > best;
@@ -136,8 +135,8 @@ std::vector<MistakeTrial> RunMistakes::Search(const std::function<bool()>& time_
     if (next.size() > kExtended) next.resize(kExtended);
     from = std::move(next);
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const MistakeTrial& a, const MistakeTrial& b) { return a.Merit() > b.Merit(); });
+  std::ranges::stable_sort(
+      all, [](const MistakeTrial& a, const MistakeTrial& b) { return a.Merit() > b.Merit(); });
   return all;
 }
 

@@ -9,7 +9,6 @@
 #include "diagnose/evidence/set_evidence.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The amounts in the value's own columns, converted to its unit: for all runs and one run together; with

@@ -55,7 +55,7 @@ void SetEvidence::PlaceBlocks() {
     if (left_out_[grams.run]) continue;
     PlacedBlock& block = blocks_.emplace_back(PlacedBlock{&grams, groups, {}});
     for (const int column : grams.always)
-      block.always.push_back(std::lower_bound(always_.begin(), always_.end(), column) - always_.begin());
+      block.always.push_back(std::ranges::lower_bound(always_, column) - always_.begin());
     groups += static_cast<Index>(grams.groups());
   }
   numbers_ = floor_ = inertia_share_ = VectorXd(groups);
@@ -110,7 +110,7 @@ VectorXd SetEvidence::InertiaSquares() const {
   VectorXd squares = VectorXd::Zero(numbers_.size());
   for (const PlacedBlock& block : blocks_) {
     for (size_t i = 0; i < block.grams->always.size(); ++i) {
-      if (!std::count(grams_->inertia.begin(), grams_->inertia.end(), block.grams->always[i])) continue;
+      if (!std::ranges::count(grams_->inertia, block.grams->always[i])) continue;
       const auto place = static_cast<Index>(i);
       squares.segment(block.first_group, static_cast<Index>(block.grams->groups())) +=
           block.grams->products.col(PairAt(place, place));
@@ -122,19 +122,18 @@ VectorXd SetEvidence::InertiaSquares() const {
 std::vector<int> SetEvidence::ColumnsOf(const ChangeSet& set) const {
   std::vector<int> columns;
   for (const std::string& name : set) {
-    const auto at = std::lower_bound(names_.begin(), names_.end(), name);
+    const auto at = std::ranges::lower_bound(names_, name);
     if (at == names_.end() || *at != name) throw std::out_of_range("the runs show no change '" + name + "'");
     const std::vector<int>& its = columns_of_names_[static_cast<size_t>(at - names_.begin())];
     columns.insert(columns.end(), its.begin(), its.end());
   }
-  std::sort(columns.begin(), columns.end());
+  std::ranges::sort(columns);
   return columns;
 }
 
 bool SetEvidence::Shows(const ChangeSet& set) const {
-  return std::all_of(set.begin(), set.end(), [this](const std::string& name) {
-    return std::binary_search(names_.begin(), names_.end(), name);
-  });
+  return std::ranges::all_of(
+      set, [this](const std::string& name) { return std::ranges::binary_search(names_, name); });
 }
 
 double SetEvidence::Log(const ChangeSet& set) const { return LogOf(SolveFor(set)); }

@@ -8,7 +8,6 @@
 #include "base/parallel.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The width of the search. Right answers were among the first three singles or pairs on nearly all rigs.
@@ -110,7 +109,7 @@ void SetScores::Try(const std::vector<ChangeSet>& sets) {
 std::vector<ScoredSet> SetScores::BestFirst() const {
   std::vector<ScoredSet> all;
   for (const auto& [set, score] : scores_) all.push_back({set, score});
-  std::sort(all.begin(), all.end(), Comes);
+  std::ranges::sort(all, Comes);
   return all;
 }
 

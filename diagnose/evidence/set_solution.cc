@@ -52,8 +52,7 @@ SetEvidence::Solution SetEvidence::Solve(const std::vector<int>& changes, const 
   found.columns.insert(found.columns.end(), changes.begin(), changes.end());
   std::vector<Index> inertia;
   for (size_t i = 0; i < found.columns.size(); ++i)
-    if (std::count(grams_->inertia.begin(), grams_->inertia.end(), found.columns[i]))
-      inertia.push_back(static_cast<Index>(i));
+    if (std::ranges::count(grams_->inertia, found.columns[i])) inertia.push_back(static_cast<Index>(i));
   found.amounts = VectorXd::Zero(equations.size());
   for (int turn = 0; turn < most; ++turn) {
     if (turn > 0) weights = found.next;

@@ -11,7 +11,6 @@
 #include "diagnose/fit/intervals.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using Eigen::Index;
@@ -79,9 +78,7 @@ MatrixXd LikelihoodsByRun(const SetScores& scores, const std::vector<ScoredSet>&
 }
 
 double ScoreOfNothing(const std::vector<ScoredSet>& finalists) {
-  return std::find_if(finalists.begin(), finalists.end(),
-                      [](const ScoredSet& one) { return one.set.empty(); })
-      ->score;
+  return std::ranges::find_if(finalists, [](const ScoredSet& one) { return one.set.empty(); })->score;
 }
 
 // The mean over draws of the finalists' shares exp(Z_k), with
@@ -126,8 +123,7 @@ void DropAdditions(const std::vector<ScoredSet>& finalists, VectorXd* shares) {
     order[k] = k;
     changes.push_back(ChangesOf(finalists[k].set));
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return changes[a].size() > changes[b].size(); });
+  std::ranges::stable_sort(order, [&](size_t a, size_t b) { return changes[a].size() > changes[b].size(); });
   for (const size_t k : order)
     for (size_t j = 0; j < finalists.size(); ++j) {  // the best first
       if (!AddsTo(changes[k], changes[j])) continue;

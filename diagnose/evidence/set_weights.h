@@ -32,8 +32,7 @@ ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed = 1, bool 
 // Sorts the items that have a weight, largest first, and returns how many of the first hold 90 % together.
 template <class Weighed>
 size_t SortByWeight(std::vector<Weighed>* all) {
-  std::stable_sort(all->begin(), all->end(),
-                   [](const Weighed& a, const Weighed& b) { return a.weight > b.weight; });
+  std::ranges::stable_sort(*all, [](const Weighed& a, const Weighed& b) { return a.weight > b.weight; });
   double sum = 0;
   size_t in_90 = 0;
   while (in_90 < all->size() && sum < 0.9) sum += (*all)[in_90++].weight;

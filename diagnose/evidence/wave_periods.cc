@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // One period a turn is an eccentric shaft, which every hypothesis has.
@@ -49,9 +48,8 @@ Gains GainsIn(size_t run, const Rows& waves, const Rows& rows, const SetFit& nul
   for (size_t b = 0; b < waves.blocks.size(); ++b) {
     const RowBlock& wave = waves.blocks[b];
     if (wave.run != run || wave.columns.empty()) continue;
-    const auto block = std::find_if(rows.blocks.begin(), rows.blocks.end(), [&](const RowBlock& one) {
-      return one.run == run && one.balance == wave.balance;
-    });
+    const auto block = std::ranges::find_if(
+        rows.blocks, [&](const RowBlock& one) { return one.run == run && one.balance == wave.balance; });
     if (block == rows.blocks.end() || block->X.rows() != wave.X.rows()) continue;
     Eigen::VectorXd root = Eigen::VectorXd::Zero(block->y.size());
     for (Eigen::Index i = 0; i < root.size(); ++i) {

@@ -15,7 +15,6 @@
 #include "diagnose/fit/turn.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // With more runs than this, the solver eliminates their starts first.

@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace hydro::diagnose {
-
 namespace {
 
 // How far a fit may move from an effect's starting points: by this factor, up or down.
@@ -33,7 +32,7 @@ std::vector<FreeEffectNumber> FreeEffectNumbers(const Hypothesis& hypothesis) {
   for (size_t i = 0; i < all.size(); ++i) {
     const model::EffectDescription& effect = model.effects[all[i].effect];
     const std::vector<std::string>& moved = hypothesis.effects;
-    if (std::find(moved.begin(), moved.end(), effect.id) == moved.end()) continue;
+    if (std::ranges::find(moved, effect.id) == moved.end()) continue;
     if (!all[i].IsStated(model)) continue;
     const double value = all[i].In(&model);
     const bool periods = InfoOf(effect, all[i].name).role == model::Role::kPeriods;
@@ -108,7 +107,7 @@ std::vector<FreeParameter> Hypothesis::Free() const {
       parameter.low = info.min + kAboveTheLeast * std::max(1.0, std::abs(info.min));
     }
     const bool within_runs = info.scale == model::Scale::kSpeed && !info.starts.empty() &&
-                             *std::max_element(info.starts.begin(), info.starts.end()) < 1;
+                             *std::ranges::max_element(info.starts) < 1;
     if (within_runs && parameter.low < highest_speed)
       parameter.high = std::min(parameter.high, highest_speed);
     if (parameter.role == model::Role::kFrequency && parameter.low < highest_frequency)
@@ -128,7 +127,7 @@ void Hypothesis::Set(const std::vector<double>& values) {
 }
 
 bool Hypothesis::Has(const Change& change) const {
-  return std::find(changes.begin(), changes.end(), change) != changes.end();
+  return std::ranges::find(changes, change) != changes.end();
 }
 
 Hypothesis Hypothesis::Held() const {
@@ -233,7 +232,7 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
   more.changes.push_back(change);
   if (change.effect.empty()) {
     const size_t place = model::BasePlace(change.parameter);
-    if (std::find(more.base.begin(), more.base.end(), place) == more.base.end()) more.base.push_back(place);
+    if (std::ranges::find(more.base, place) == more.base.end()) more.base.push_back(place);
     return {more};
   }
   const model::EffectInfo& info = *model::FindEffect(change.effect);

@@ -12,7 +12,6 @@
 #include "diagnose/recording/sample_interval.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using Eigen::Index;
@@ -125,7 +124,7 @@ std::vector<double> KnownVariances(const Hypothesis& hypothesis) {
 Fitted WithHeld(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
   Hypothesis all = fitted.hypothesis;
   for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
-    const bool free = std::find(all.base.begin(), all.base.end(), place) != all.base.end();
+    const bool free = std::ranges::find(all.base, place) != all.base.end();
     if (!free && all.model.parameters.*model::BaseParameters()[place].member > 0) all.base.push_back(place);
   }
   FitOptions held;
@@ -195,8 +194,8 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   std::vector<Index> own, held;
   std::vector<double> off;  // of the held numbers, as fitted
   for (size_t i = 0; i < numbers.size(); ++i) {
-    const bool is_free = std::any_of(free.begin(), free.end(),
-                                     [&](const FreeParameter& one) { return one.name == numbers[i].name; });
+    const bool is_free =
+        std::ranges::any_of(free, [&](const FreeParameter& one) { return one.name == numbers[i].name; });
     (is_free ? own : held).push_back(static_cast<Index>(i));
     if (!is_free) off.push_back(kIdealisedHeld * numbers[i].value / numbers[i].Slope());
   }

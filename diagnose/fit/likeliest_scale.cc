@@ -9,7 +9,6 @@
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using model::Parameters;
@@ -37,7 +36,7 @@ struct Follower {
 };
 
 bool Has(const std::vector<size_t>& base, const char* name) {
-  return std::find(base.begin(), base.end(), model::BasePlace(name)) != base.end();
+  return std::ranges::find(base, model::BasePlace(name)) != base.end();
 }
 
 // The powers of a base value. Where the volume at mid-stroke may not move, the bulk modulus moves instead.
@@ -61,8 +60,8 @@ std::vector<Follower> FollowersOf(const model::ModelDescription& given, const st
     Follower follower = FollowerOf(one.member, volume_moves);
     const double before = given.parameters.*one.member, now = values.*one.member;
     if (follower.member == nullptr || !(before > 0) || !(now > 0)) continue;
-    const bool named = std::any_of(changes.begin(), changes.end(),
-                                   [&](const Change& change) { return change.parameter == one.info.name; });
+    const bool named =
+        std::ranges::any_of(changes, [&](const Change& change) { return change.parameter == one.info.name; });
     follower.deviation = named ? 1 : model::UncertaintyOf(given, place);
     follower.moved = std::log(now / before);
     if (follower.deviation > 0) followers.push_back(follower);
@@ -149,7 +148,7 @@ bool FollowsTorques(const model::ModelDescription& model, const FreeParameter& p
     const auto member = model::BaseParameters()[place].member;
     const auto torques = {&Parameters::k_1, &Parameters::T_pmax, &Parameters::J,
                           &Parameters::b,   &Parameters::T_s,    &Parameters::f};
-    return std::find(torques.begin(), torques.end(), member) != torques.end();
+    return std::ranges::find(torques, member) != torques.end();
   }
   const model::EffectParameter number = model::EffectParameters(model)[place];
   const std::vector<model::ParameterInfo>& infos =

@@ -9,7 +9,6 @@
 #include "model/response.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // How far a base parameter that is given as 0 may be from 0: the size of the pump's greatest torque, of the

@@ -8,7 +8,6 @@
 #include "model/terms/state.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Relative tolerance of an integration step. With 1e-5, a Stribeck speed of 0.1 rad/s came out 11 % too
@@ -91,11 +90,10 @@ std::optional<size_t> UnknownTurn(const model::ModelDescription& model, const Ru
 
 std::vector<model::Unknown> StartUnknowns(const model::ModelDescription& model, const RunData& run) {
   const std::optional<size_t> turn = UnknownTurn(model, run);
-  const bool waves =
-      run.begins_within && std::any_of(model.effects.begin(), model.effects.end(), [](const auto& effect) {
-        return model::HasRole(effect.id, model::Role::kFrequency);
-      });
-  const bool returned = std::any_of(model.effects.begin(), model.effects.end(), [](const auto& effect) {
+  const bool waves = run.begins_within && std::ranges::any_of(model.effects, [](const auto& effect) {
+                       return model::HasRole(effect.id, model::Role::kFrequency);
+                     });
+  const bool returned = std::ranges::any_of(model.effects, [](const auto& effect) {
     const model::EffectInfo* info = model::FindEffect(effect);
     return info != nullptr && info->remembers_flow;
   });

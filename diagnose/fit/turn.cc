@@ -11,7 +11,6 @@
 #include "diagnose/fit/residuals.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Appends the effect's numbers that have this role.

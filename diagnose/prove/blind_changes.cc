@@ -10,7 +10,6 @@
 #include "diagnose/prove/refined_values.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // As a fraction of what an effect has to gain: with a smaller gain, refining the other values does not make
@@ -22,15 +21,14 @@ constexpr int kStepsOfARace = 2;
 }  // namespace
 
 std::vector<Change> BlindChanges(const ProofContext& context) {
-  const bool free = std::any_of(context.runs.begin(), context.runs.end(), [](const RunData* run) {
-    return run->stimulus.shaft == model::Shaft::kFree;
-  });
+  const bool free = std::ranges::any_of(
+      context.runs, [](const RunData* run) { return run->stimulus.shaft == model::Shaft::kFree; });
   // Where no pressure was measured, no effect of the oil shows.
-  const bool oil = std::any_of(context.runs.begin(), context.runs.end(), [](const RunData* run) {
+  const bool oil = std::ranges::any_of(context.runs, [](const RunData* run) {
     return !run->stimulus.bypass && run->measured.p1.measured() && run->measured.p2.measured();
   });
-  const bool angle = std::any_of(context.runs.begin(), context.runs.end(),
-                                 [](const RunData* run) { return run->measured.motor_angle.measured(); });
+  const bool angle = std::ranges::any_of(
+      context.runs, [](const RunData* run) { return run->measured.motor_angle.measured(); });
   std::vector<Change> blind;
   for (const Change& change : context.changes) {
     // In every hypothesis balances allow for signals that are late by a little; simulations do not. A speed

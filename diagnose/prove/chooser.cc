@@ -7,7 +7,6 @@
 #include "diagnose/prove/proof_context.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr size_t kGiven = ProofSets::kGiven;
@@ -56,8 +55,7 @@ size_t Chooser::Reduced(size_t place) {
     least = lost;
   }
   if (reduced != place) return reduced;
-  std::stable_sort(needed.begin(), needed.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::stable_sort(needed, [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [lost, change] : needed) {
     const size_t without = sets_.Without(place, change, Values::kRefined);
     if (!IsKept(place, without, sets_.PriceOf(change))) return without;
@@ -69,7 +67,7 @@ size_t Chooser::Choice() {
   size_t best = LeadingSet(sets_.all());
   if (best >= sets_.size()) return kGiven;
   std::vector<size_t> led;  // comparisons of three sets may cycle, so each leads once
-  for (size_t next = best; std::find(led.begin(), led.end(), next) == led.end();) {
+  for (size_t next = best; std::ranges::find(led, next) == led.end();) {
     best = next;
     led.push_back(best);
     sets_.Refine(best);
@@ -117,8 +115,8 @@ void Chooser::Race(size_t from, const std::vector<Change>& blind) {
   if (!sets_.has_fitted()) return;
   for (const Change& change : blind) {
     const std::vector<model::EffectDescription>& effects = sets_[from].hypothesis.model.effects;
-    const bool there = std::any_of(effects.begin(), effects.end(),
-                                   [&](const auto& effect) { return effect.id == change.effect; });
+    const bool there =
+        std::ranges::any_of(effects, [&](const auto& effect) { return effect.id == change.effect; });
     if (!there && !TimeIsUp(sets_.context())) sets_.Race(from, change);
   }
 }

@@ -10,7 +10,6 @@
 #include "diagnose/prove/refined_values.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The windows' fit at the best set's values, which leave these gaps, with derivatives and prior knowledge.
@@ -78,7 +77,7 @@ std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof, d
     size_t amounts = 0, none = 0;
     for (const model::ParameterInfo& parameter : info->parameters) {
       const auto is = [&](const FreeParameter& one) { return one.name == info->id + "." + parameter.name; };
-      const auto fitted = std::find_if(free.begin(), free.end(), is);
+      const auto fitted = std::ranges::find_if(free, is);
       // Of a delay or lag, a time of 0 is none.
       const bool counts = IsAmount(parameter) || parameter.role == model::Role::kTime;
       if (!counts || fitted == free.end()) continue;

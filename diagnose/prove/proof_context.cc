@@ -5,7 +5,6 @@
 #include "diagnose/recording/windows.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr double kWindowsPerRun = 4;

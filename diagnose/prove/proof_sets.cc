@@ -14,7 +14,6 @@
 #include "diagnose/recording/thinned.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Limit for fits to whole runs: numbers times samples, some seconds of work.
@@ -38,7 +37,7 @@ ProofSets::ProofSets(const ProofContext& context, const Hypothesis& as_given,
   // model as given has one itself, every set is searched: the turns that suit its wrong values mislead all
   // others, as on a motor whose J was 18 % too small.
   const std::vector<model::EffectDescription>& own = context.given.effects;
-  const bool repeats = std::any_of(own.begin(), own.end(), [](const model::EffectDescription& effect) {
+  const bool repeats = std::ranges::any_of(own, [](const model::EffectDescription& effect) {
     return model::HasRole(effect.id, model::Role::kPeriods);
   });
   for (JudgingWindows* judging : {&windows_.near, &windows_.far})
@@ -82,7 +81,7 @@ void ProofSets::AddProposal(const Proposal& proposal) {
   // the others. Where nothing but values differs, windows may show one that the balances do not.
   for (const size_t place : allowed_) {
     const bool all = proposal.base.size() > static_cast<size_t>(kMostChanges) || proposal.changes.empty();
-    const bool there = std::find(proposal.base.begin(), proposal.base.end(), place) != proposal.base.end();
+    const bool there = std::ranges::find(proposal.base, place) != proposal.base.end();
     if (all && !there) hypothesis.base.push_back(place);
   }
   for (const Change& change : proposal.changes) {
@@ -204,8 +203,8 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
 size_t ProofSets::Without(size_t with, const Change& change, Values values) {
   std::vector<Change> fewer = sets_[with].Effects();
   std::erase(fewer, change);
-  auto made = std::find_if(made_.begin(), made_.end(),
-                           [&](const Made& one) { return one.from == with && one.without == change; });
+  auto made =
+      std::ranges::find_if(made_, [&](const Made& one) { return one.from == with && one.without == change; });
   if (made == made_.end() && made_.size() < kMostMade) {
     ProvedSet less;
     less.hypothesis = diagnose::Without(sets_[with].hypothesis, change, context_.given);

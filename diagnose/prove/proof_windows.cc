@@ -10,7 +10,6 @@
 #include "diagnose/recording/windows.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Limits of a proof's work. With 20 judging windows, a difference of 10 % shows even if single windows
@@ -34,8 +33,7 @@ WindowPool ByHeight(const WindowPool& pool, model::Channel channel, double sign)
     const maths::Range range = maths::RangeOf(signal->values);
     heights.emplace_back(sign > 0 ? -range.high : range.low, window);
   }
-  std::stable_sort(heights.begin(), heights.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::stable_sort(heights, [](const auto& a, const auto& b) { return a.first < b.first; });
   WindowPool sorted;
   for (const auto& [height, window] : heights) sorted.push_back(window);
   return sorted;
@@ -53,7 +51,7 @@ WindowPool Chosen(const WindowPool& pool, size_t most, size_t of_an_extreme) {
       if (sign < 0 && channel != model::Channel::kMotorSpeed) continue;
       const WindowPool highest = ByHeight(pool, channel, sign);
       for (size_t k = 0; k < std::min(highest.size(), of_an_extreme); ++k) {
-        taken[static_cast<size_t>(std::find(pool.begin(), pool.end(), highest[k]) - pool.begin())] = true;
+        taken[static_cast<size_t>(std::ranges::find(pool, highest[k]) - pool.begin())] = true;
       }
     }
   }
@@ -75,8 +73,8 @@ void SetJudging(const std::vector<const RunData*>& predicted, const WindowPool& 
                 JudgingWindows* judging) {
   judging->windows = windows;
   for (const RunData* window : windows) {
-    const auto run = std::find_if(predicted.begin(), predicted.end(),
-                                  [&](const RunData* one) { return one->name == window->name; });
+    const auto run =
+        std::ranges::find_if(predicted, [&](const RunData* one) { return one->name == window->name; });
     judging->runs.push_back(static_cast<size_t>(run - predicted.begin()));
   }
 }
@@ -85,9 +83,8 @@ void SetJudging(const std::vector<const RunData*>& predicted, const WindowPool& 
 
 double NearHorizon(const std::vector<const RunData*>& runs) {
   const double seconds = std::max(kHorizon, kFewestSamplesOfAWindow * SampleInterval(runs));
-  const auto longer = std::count_if(runs.begin(), runs.end(), [&](const RunData* run) {
-    return run->duration() > kWindowsOfARun * seconds;
-  });
+  const auto longer = std::ranges::count_if(
+      runs, [&](const RunData* run) { return run->duration() > kWindowsOfARun * seconds; });
   return 2 * static_cast<size_t>(longer) >= runs.size() ? seconds : SearchHorizon(runs);
 }
 

@@ -18,7 +18,6 @@
 #include "diagnose/prove/unrecorded.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // In a prototype the truth was among the first five sets on all but one of 40 rigs.
@@ -49,7 +48,7 @@ std::vector<model::ModelDescription> ModelsOfRuns(const ProofContext& context,
   std::vector<model::ModelDescription> models(context.predicted().size(), model);
   for (const size_t place : ValuesOfADay(allowed)) {
     const model::BaseParameter& base = model::BaseParameters()[place];
-    if (std::find(set.begin(), set.end(), "run." + base.info.name) == set.end()) continue;
+    if (std::ranges::find(set, "run." + base.info.name) == set.end()) continue;
     const std::optional<RunValues> values = ValuesOfRuns(model, context.predicted(), place, context.jobs);
     for (size_t r = 0; r < models.size() && values; ++r) models[r].parameters.*base.member = values->value[r];
   }
@@ -68,10 +67,10 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& named, const Expl
   const bool runs_first = !named.explanations.empty() && NamesARun(named.explanations.front().set);
   const auto add = [&](const ChangeSet& set) {
     if (NamesARun(set) && !(runs_first && set == named.explanations.front().set)) return;
-    if (std::find(sets.begin(), sets.end(), set) == sets.end()) sets.push_back(set);
+    if (std::ranges::find(sets, set) == sets.end()) sets.push_back(set);
   };
   const auto add_best = [&](const auto& is) {
-    const auto best = std::find_if(scores.begin(), scores.end(), is);
+    const auto best = std::ranges::find_if(scores, is);
     if (best != scores.end()) add(best->set);
   };
   const auto is_single = [](const ScoredSet& one) { return one.set.size() == 1; };
@@ -103,7 +102,7 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& named, const Expl
   for (const ScoredSet& scored : scores) {
     if (!is_single(scored) || !IsMissingTerm(scored.set[0])) continue;
     const std::string change(ChangeOf(scored.set[0]));
-    if (std::find(alone.begin(), alone.end(), change) != alone.end()) continue;
+    if (std::ranges::find(alone, change) != alone.end()) continue;
     alone.push_back(change);
     add(scored.set);
   }
@@ -116,8 +115,7 @@ void AtLikeliestScale(const model::ModelDescription& given, EstimatedModel* esti
   std::vector<size_t> moved;
   for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
     const auto member = model::BaseParameters()[place].member;
-    const bool there =
-        std::find(estimated->base.begin(), estimated->base.end(), place) != estimated->base.end();
+    const bool there = std::ranges::find(estimated->base, place) != estimated->base.end();
     const bool differs = estimated->model.parameters.*member != given.parameters.*member;
     if (there || differs || member == &model::Parameters::k_1) moved.push_back(place);
   }
@@ -151,7 +149,7 @@ std::optional<Proposal> OneValueAlone(const model::ModelDescription& given, cons
 bool HasTwoOfAKind(const model::ModelDescription& model) {
   std::vector<std::string> ids;
   for (const model::EffectDescription& effect : model.effects) ids.push_back(effect.id);
-  std::sort(ids.begin(), ids.end());
+  std::ranges::sort(ids);
   return std::adjacent_find(ids.begin(), ids.end()) != ids.end();
 }
 
@@ -183,8 +181,7 @@ std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
     const bool beside = (torque && member == &Parameters::k_1) ||
                         (arm && (member == &Parameters::k_2 || member == &Parameters::c)) ||
                         (oil && (member == &Parameters::c_E || member == &Parameters::c_I));
-    if (beside || std::find(values.base.begin(), values.base.end(), place) != values.base.end())
-      shown.push_back(place);
+    if (beside || std::ranges::find(values.base, place) != values.base.end()) shown.push_back(place);
   }
   return shown;
 }
@@ -195,7 +192,7 @@ std::vector<std::string> RemarksOn(const ScanRuns& runs) {
     // Once, however many shapes of it do.
     const std::string remark = std::string(ChangeOf(effect)) + " does in these runs what another value of " +
                                value + " does: it is said as the value";
-    if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end()) remarks.push_back(remark);
+    if (std::ranges::find(remarks, remark) == remarks.end()) remarks.push_back(remark);
   }
   return remarks;
 }
@@ -211,8 +208,8 @@ std::vector<std::string> UnlikelyEffects(const std::vector<ScoredSet>& scores) {
     best = std::max(best, scored.score);
     const std::string id = EffectOf(scored.set[0]);
     std::vector<std::string>& to = scored.score > best - least ? likely : unlikely;
-    const bool known = std::find(likely.begin(), likely.end(), id) != likely.end();
-    if (!known && std::find(to.begin(), to.end(), id) == to.end()) to.push_back(id);
+    const bool known = std::ranges::find(likely, id) != likely.end();
+    if (!known && std::ranges::find(to, id) == to.end()) to.push_back(id);
   }
   return unlikely;
 }
@@ -224,17 +221,16 @@ void RefineLeaders(ScanRuns* runs, Rows* rows, int jobs) {
   const std::vector<ScoredSet> scores = ScanSets(SetEvidence(*rows), jobs).BestFirst();
   const auto refine = [&](const ChangeSet& set) {
     if (refined.size() >= kMostLeaders) return;
-    const bool fresh = std::any_of(set.begin(), set.end(), [&](const std::string& name) {
+    const bool fresh = std::ranges::any_of(set, [&](const std::string& name) {
       const std::string change(ChangeOf(name));
       const bool has_shape = name.find('|') != std::string::npos;
-      return has_shape && std::find(refined.begin(), refined.end(), change) == refined.end();
+      return has_shape && std::ranges::find(refined, change) == refined.end();
     });
     if (!fresh) return;
     for (const std::string& name : set) refined.emplace_back(ChangeOf(name));
     RefinedShapes(runs, *rows, set).Keep(rows);
   };
-  const auto named =
-      std::find_if(scores.begin(), scores.end(), [](const ScoredSet& one) { return !HasCurve(one.set); });
+  const auto named = std::ranges::find_if(scores, [](const ScoredSet& one) { return !HasCurve(one.set); });
   if (named != scores.end()) refine(named->set);
   for (const ScoredSet& one : scores) {
     if (one.set.size() == 1) refine(one.set);
@@ -294,7 +290,7 @@ ScanRuns SettledRuns(const ProofContext& context, ScanOptions options) {
 }  // namespace
 
 bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
-  return std::any_of(set.begin(), set.end(), [&](const std::string& change) {
+  return std::ranges::any_of(set, [&](const std::string& change) {
     bool only_adds = false, adds = false;
     for (size_t i = 0; i < fit.columns.size(); ++i) {
       const ScanColumn& column = rows.columns[static_cast<size_t>(fit.columns[i])];

@@ -10,7 +10,6 @@
 #include "diagnose/prove/whole_runs.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The number of proposals whose values are refined: a scan is useful only if the truth is among its first
@@ -72,7 +71,7 @@ size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
     const size_t without = sets->Without(proof.best, change, ProofSets::Values::kRefined);
     if (without >= sets->size() || without == proof.best) continue;
     sets->RefineForReport(without);  // as well fitted as what it is to replace
-    const bool in_error = std::find(stands_in.begin(), stands_in.end(), change) != stands_in.end();
+    const bool in_error = std::ranges::find(stands_in, change) != stands_in.end();
     if (in_error || !DoWindowsShow(sets, proof.best, without)) return without;
   }
   return proof.best;

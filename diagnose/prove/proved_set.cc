@@ -9,7 +9,6 @@
 #include "diagnose/prove/proof_context.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 double MedianLogarithm(const std::vector<WindowGap>& gaps) {
@@ -57,8 +56,8 @@ std::vector<Change> ProvedSet::Effects() const {
 }
 
 bool ProvedSet::HasCurve() const {
-  return std::any_of(hypothesis.changes.begin(), hypothesis.changes.end(),
-                     [](const Change& change) { return IsClosureEffect(change.effect); });
+  return std::ranges::any_of(hypothesis.changes,
+                             [](const Change& change) { return IsClosureEffect(change.effect); });
 }
 
 void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set) {
@@ -135,12 +134,12 @@ std::vector<size_t> WorthRefining(const std::vector<ProvedSet>& sets, size_t mos
     if (!sets[i].tested() || sets[i].hypothesis.Free().empty()) continue;
     (sets[i].Effects().empty() ? values : others).push_back(i);
   }
-  std::stable_sort(others.begin(), others.end(), [&](size_t a, size_t b) {
+  std::ranges::stable_sort(others, [&](size_t a, size_t b) {
     return WorthOf(sets[leading], sets[a]).logarithm > WorthOf(sets[leading], sets[b]).logarithm;
   });
   others.resize(std::min(others.size(), most));
   values.insert(values.end(), others.begin(), others.end());
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   return values;
 }
 

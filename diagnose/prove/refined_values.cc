@@ -11,7 +11,6 @@
 #include "diagnose/recording/thinned.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // If a round reduces the sum of squares by less than this part, another round is not worthwhile.
@@ -68,8 +67,8 @@ std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
 std::shared_ptr<const Knowledge> KnownOfValues(const ProofContext& context,
                                                const std::vector<const RunData*>& windows,
                                                const Hypothesis& hypothesis, double sum) {
-  const auto named = std::count_if(hypothesis.changes.begin(), hypothesis.changes.end(),
-                                   [](const Change& change) { return change.effect.empty(); });
+  const auto named =
+      std::ranges::count_if(hypothesis.changes, [](const Change& change) { return change.effect.empty(); });
   return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context.given, windows, sum) : nullptr;
 }
 

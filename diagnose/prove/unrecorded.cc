@@ -9,7 +9,6 @@
 #include "diagnose/prove/blind_changes.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Signals that a balance needs and that no run has.
@@ -43,7 +42,7 @@ std::vector<Unjudged> UnseenWaves(const ScanRuns& runs) {
   for (const EffectVariant& variant : runs.setup().variants) {
     if (variant.kind == EffectVariant::Kind::kWave) unseen.effects.push_back(variant.change.effect);
   }
-  std::sort(unseen.effects.begin(), unseen.effects.end());
+  std::ranges::sort(unseen.effects);
   unseen.effects.erase(std::unique(unseen.effects.begin(), unseen.effects.end()), unseen.effects.end());
   if (unseen.effects.empty()) return {};
   return {unseen};
@@ -52,8 +51,7 @@ std::vector<Unjudged> UnseenWaves(const ScanRuns& runs) {
 }  // namespace
 
 bool NamesARun(const ChangeSet& set) {
-  return std::any_of(set.begin(), set.end(),
-                     [](const std::string& name) { return name.starts_with("run."); });
+  return std::ranges::any_of(set, [](const std::string& name) { return name.starts_with("run."); });
 }
 
 std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& runs,
@@ -94,7 +92,7 @@ std::vector<ChangeSet> SetsWithout(const std::set<std::string>& oil, const Expla
   for (size_t i = 0; i < std::min(weights.in_90, weights.explanations.size()); ++i) {
     ChangeSet set = weights.explanations[i].set;
     std::erase_if(set, [&](const std::string& name) { return oil.contains(name); });
-    if (!NamesARun(set) && std::find(sets.begin(), sets.end(), set) == sets.end()) sets.push_back(set);
+    if (!NamesARun(set) && std::ranges::find(sets, set) == sets.end()) sets.push_back(set);
   }
   return sets;
 }
@@ -110,9 +108,8 @@ ExplanationWeights AsOneClass(const std::set<std::string>& oil, ExplanationWeigh
       one.changes = ChangesOf(others);
       one.changes.emplace_back(kSomeOil);
     }
-    const auto same =
-        std::find_if(merged.explanations.begin(), merged.explanations.end(),
-                     [&](const WeighedExplanation& other) { return other.changes == one.changes; });
+    const auto same = std::ranges::find_if(
+        merged.explanations, [&](const WeighedExplanation& other) { return other.changes == one.changes; });
     if (same == merged.explanations.end())
       merged.explanations.push_back(std::move(one));
     else

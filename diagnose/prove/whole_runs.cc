@@ -11,7 +11,6 @@
 #include "diagnose/prove/proof_context.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Noise units: beyond this, small errors of values that add up over a run hide what is missing.
@@ -57,7 +56,7 @@ struct Tested {
 
 // Values are worth testing, and so are effects that the balances do not rule out.
 bool IsWorthTesting(const Change& change, const std::vector<std::string>& unlikely) {
-  return std::find(unlikely.begin(), unlikely.end(), change.effect) == unlikely.end();
+  return std::ranges::find(unlikely, change.effect) == unlikely.end();
 }
 
 // The best start of each change by the score test, the most promising change first.
@@ -90,7 +89,7 @@ std::vector<Tested> ScoreTest(const ProofContext& context, const Hypothesis& giv
       best.push_back({starts[i], sums[i]});
     }
   }
-  std::stable_sort(best.begin(), best.end(), [](const Tested& a, const Tested& b) { return a.sum < b.sum; });
+  std::ranges::stable_sort(best, [](const Tested& a, const Tested& b) { return a.sum < b.sum; });
   if (best.size() > kMostFittedChanges) best.resize(kMostFittedChanges);
   return best;
 }

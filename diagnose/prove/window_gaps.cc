@@ -14,7 +14,6 @@
 #include "model/terms/state.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // A start is corrected in at most this many linear models, each confirmed by at most this many simulations,
@@ -255,8 +254,7 @@ GapFall FallOf(const std::vector<WindowGap>& before, const std::vector<WindowGap
   // Windows for which both predict the same have no say: a valve that opens in two windows of twenty is
   // judged by these two.
   const auto alike = [](double fall) { return std::abs(fall) < kAlike; };
-  if (static_cast<size_t>(std::count_if(falls.begin(), falls.end(), alike)) + kFewestThatDiffer <=
-      falls.size())
+  if (static_cast<size_t>(std::ranges::count_if(falls, alike)) + kFewestThatDiffer <= falls.size())
     std::erase_if(falls, alike);
   GapFall fall;
   fall.windows = falls.size();
@@ -270,8 +268,7 @@ GapFall FallOf(const std::vector<WindowGap>& before, const std::vector<WindowGap
 }
 
 bool IsTested(const std::vector<WindowGap>& gaps) {
-  const auto tested =
-      std::count_if(gaps.begin(), gaps.end(), [](const WindowGap& gap) { return gap.tested; });
+  const auto tested = std::ranges::count_if(gaps, [](const WindowGap& gap) { return gap.tested; });
   return !gaps.empty() && 2 * static_cast<size_t>(tested) >= gaps.size();
 }
 

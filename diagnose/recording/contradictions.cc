@@ -66,11 +66,11 @@ std::string ImpossibleTemperature(const Run& run) {
   const std::vector<double>& values = run.temperature.values;
   constexpr maths::Range kOil = kOilTemperatures;
   const auto is_one = [=](double value) { return value < kOil.low || value > kOil.high; };
-  const auto first = std::find_if(values.begin(), values.end(), is_one);
+  const auto first = std::ranges::find_if(values, is_one);
   if (first == values.end()) return "";
   const maths::Range range = maths::RangeOf(values);
   const bool kelvin = range.low > kOil.low + kZeroInKelvin && range.high < kOil.high + kZeroInKelvin;
-  const auto count = std::count_if(values.begin(), values.end(), is_one);
+  const auto count = std::ranges::count_if(values, is_one);
   return "temperature is " + ShortNumber(*first) + " degC at " +
          ShortNumber(run.time[static_cast<size_t>(first - values.begin())]) + " s, and outside " +
          ShortNumber(kOil.low) + " to " + ShortNumber(kOil.high) + " degC, as no oil is, in " +

@@ -26,8 +26,7 @@ struct Repeats {
 // whole ratio; and multiples, from samples that by chance equal the one before.
 bool IsRhythm(const std::vector<double>& lengths, double usual) {
   const auto share = [&](const auto& is_one) {
-    return static_cast<double>(std::count_if(lengths.begin(), lengths.end(), is_one)) /
-           static_cast<double>(lengths.size());
+    return static_cast<double>(std::ranges::count_if(lengths, is_one)) / static_cast<double>(lengths.size());
   };
   const double multiples = share([=](double length) { return std::fmod(length, usual) == 0; });
   const double shorter = share([=](double length) { return length == usual - 1; });

@@ -141,8 +141,7 @@ double SpectralNoise(const std::vector<double>& values, const std::vector<int>& 
   }
 
   // Pools bands from the quietest two upwards, until the next one is louder by more than chance allows.
-  std::sort(powers.begin(), powers.end(),
-            [](const auto& a, const auto& b) { return NoisePower(a) < NoisePower(b); });
+  std::ranges::sort(powers, [](const auto& a, const auto& b) { return NoisePower(a) < NoisePower(b); });
   // Independent powers in a band: half as many over the whole spectrum as there are samples.
   const double used = kHop * static_cast<double>(segments.size());
   const double independent = std::max(2.0, used / (4.0 * kBands));

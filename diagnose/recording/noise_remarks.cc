@@ -60,8 +60,7 @@ Group GroupOf(const RunData& run, bool noisier) {
 void Join(const Group& more, Group* group) {
   group->runs.push_back(more.runs.front());
   for (const std::string& sidecar : more.sidecars) {
-    const bool there =
-        std::find(group->sidecars.begin(), group->sidecars.end(), sidecar) != group->sidecars.end();
+    const bool there = std::ranges::find(group->sidecars, sidecar) != group->sidecars.end();
     if (!there) group->sidecars.push_back(sidecar);
   }
   for (size_t i = 0; i < more.signals.size(); ++i) {
@@ -111,8 +110,7 @@ std::vector<std::string> NoiseRemarks(const std::vector<const RunData*>& runs) {
     for (const RunData* run : runs) {
       Group one = GroupOf(*run, noisier);
       if (one.signals.empty()) continue;
-      const auto same =
-          std::find_if(groups.begin(), groups.end(), [&](const Group& group) { return group.Takes(one); });
+      const auto same = std::ranges::find_if(groups, [&](const Group& group) { return group.Takes(one); });
       if (same == groups.end()) {
         groups.push_back(std::move(one));
       } else {

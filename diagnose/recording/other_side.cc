@@ -10,9 +10,9 @@ using Run = runs::MeasuredRun;
 using Mistakes = std::vector<RecordingMistake>;
 
 bool HasSign(const Mistakes& mistakes, SignalOfRun signal) {
-  return std::any_of(mistakes.begin(), mistakes.end(), [signal](const RecordingMistake& mistake) {
-    return mistake.IsSign() && std::any_of(mistake.factors.begin(), mistake.factors.end(),
-                                           [signal](const auto& one) { return one.first == signal; });
+  return std::ranges::any_of(mistakes, [signal](const RecordingMistake& mistake) {
+    return mistake.IsSign() &&
+           std::ranges::any_of(mistake.factors, [signal](const auto& one) { return one.first == signal; });
   });
 }
 
@@ -38,22 +38,21 @@ bool IsSignOf(const RecordingMistake& mistake, const std::vector<SignalOfRun>& s
 std::optional<Mistakes> SeenFromTheOtherSide(const Mistakes& mistakes, const Run& run) {
   const bool one_pressure = run.p1.measured() != run.p2.measured();
   // In the twin, a mistake of one pressure would have to name the other side.
-  const bool of_one = std::any_of(mistakes.begin(), mistakes.end(),
-                                  [](const RecordingMistake& mistake) { return mistake.IsOfOnePressure(); });
+  const bool of_one = std::ranges::any_of(
+      mistakes, [](const RecordingMistake& mistake) { return mistake.IsOfOnePressure(); });
   if (one_pressure || of_one) return std::nullopt;
   const bool clamped = run.shaft == model::Shaft::kClamped;
   const std::vector<std::vector<SignalOfRun>> turned = {
       Turned(run, mistakes, {&Run::voltage}), Turned(run, mistakes, {&Run::motor_speed, &Run::motor_angle}),
       clamped ? std::vector<SignalOfRun>{} : Turned(run, mistakes, {&Run::arm_angle, &Run::arm_speed})};
-  const bool exchanged = std::any_of(mistakes.begin(), mistakes.end(),
-                                     [](const auto& mistake) { return mistake.pressures_exchanged; });
+  const bool exchanged =
+      std::ranges::any_of(mistakes, [](const auto& mistake) { return mistake.pressures_exchanged; });
   Mistakes twin;
   for (const RecordingMistake& possible : PossibleMistakes(run)) {
-    const bool sign = std::any_of(turned.begin(), turned.end(), [&](const auto& signals) {
-      return !signals.empty() && IsSignOf(possible, signals);
-    });
+    const bool sign = std::ranges::any_of(
+        turned, [&](const auto& signals) { return !signals.empty() && IsSignOf(possible, signals); });
     const bool stays = !possible.IsSign() && !possible.pressures_exchanged &&
-                       std::find(mistakes.begin(), mistakes.end(), possible) != mistakes.end();
+                       std::ranges::find(mistakes, possible) != mistakes.end();
     if (sign || stays || (possible.pressures_exchanged && !exchanged)) twin.push_back(possible);
   }
   std::copy_if(mistakes.begin(), mistakes.end(), std::back_inserter(twin),

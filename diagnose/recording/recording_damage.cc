@@ -103,7 +103,7 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values, double noi
   // How often a value repeats the previous one by chance. A few long stretches are damage; many are the
   // record of a slow sensor.
   const auto is_long = [](const Stretch& one) { return one.last - one.first >= kShortestHold; };
-  const bool few = std::count_if(equal.begin(), equal.end(), is_long) <= kFew;
+  const bool few = std::ranges::count_if(equal, is_long) <= kFew;
   double repeats = 1;
   for (const Stretch& one : equal) {
     if (!few || !is_long(one)) repeats += static_cast<double>(one.last - one.first - 1);
@@ -209,7 +209,7 @@ void SetAside(const model::ModelDescription& model, Run* run, std::vector<size_t
     std::erase_if(held, [&](const Stretch& one) { return TurnsAtHeldSpeed(*run, sensor, one); });
     const std::vector<size_t> others = Spikes(values);
     spikes.insert(spikes.end(), others.begin(), others.end());
-    std::sort(spikes.begin(), spikes.end());
+    std::ranges::sort(spikes);
     *sensors += noise > 0 ? 1 : 0;
     size_t count = 0;
     for (const Stretch& one : held) {
@@ -262,7 +262,7 @@ std::vector<Stretch> LostSteps(const Run& run, const std::vector<size_t>& held_t
     }
     i = end;
   }
-  std::sort(lost.begin(), lost.end(), [](const Stretch& a, const Stretch& b) { return a.first < b.first; });
+  std::ranges::sort(lost, [](const Stretch& a, const Stretch& b) { return a.first < b.first; });
   return lost;
 }
 

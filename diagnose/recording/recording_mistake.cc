@@ -64,9 +64,8 @@ bool Exclude(const RecordingMistake& a, const RecordingMistake& b) {
   // Two pressures in one unit count as a mistake of their own.
   const bool pressures = a.IsOfOnePressure() && b.IsOfOnePressure();
   if (pressures && a.unit == b.unit) return true;
-  return std::any_of(a.factors.begin(), a.factors.end(), [&](const auto& one) {
-    return std::any_of(b.factors.begin(), b.factors.end(),
-                       [&](const auto& other) { return one.first == other.first; });
+  return std::ranges::any_of(a.factors, [&](const auto& one) {
+    return std::ranges::any_of(b.factors, [&](const auto& other) { return one.first == other.first; });
   });
 }
 

@@ -176,8 +176,7 @@ std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs) 
   for (const RunData* run : runs) {
     const std::string& layout = run->measured.layout;
     if (layout.empty()) continue;
-    const auto same =
-        std::find_if(layouts.begin(), layouts.end(), [&](const auto& one) { return one.first == layout; });
+    const auto same = std::ranges::find_if(layouts, [&](const auto& one) { return one.first == layout; });
     if (same == layouts.end()) {
       layouts.emplace_back(layout, RunNamed(run->name));
     } else {
@@ -213,7 +212,7 @@ void RequireMotion(const std::vector<const RunData*>& runs, const std::string& r
   if (runs.empty() || AreDriven(runs)) return;
   std::vector<std::string> names;
   for (const RunData* run : runs) {
-    const bool moves = std::any_of(run->signals.begin(), run->signals.end(), [](const SignalData& signal) {
+    const bool moves = std::ranges::any_of(run->signals, [](const SignalData& signal) {
       return maths::RangeOf(signal.values).size() > 2 * kHardlyMoves * signal.noise;
     });
     if (moves) return;

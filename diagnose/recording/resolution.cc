@@ -10,7 +10,7 @@ namespace {
 // The unit of which nearly all steps are multiples; 0: none.
 double CommonUnit(const std::vector<double>& steps) {
   // A table's digits round the steps, so use the mean of the smallest steps.
-  double smallest = *std::min_element(steps.begin(), steps.end());
+  double smallest = *std::ranges::min_element(steps);
   for (int pass = 0; pass < 3; ++pass) {
     double sum = 0, count = 0;
     for (const double step : steps) {
@@ -62,7 +62,7 @@ double EstimateResolution(const std::vector<double>& values) {
     if (std::isfinite(value)) sorted.push_back(value);
   }
   if (sorted.empty()) return 0;
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   // Differences within the rounding of the arithmetic are not steps.
   const double same = 1e-12 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
   std::vector<double> steps;

@@ -73,9 +73,8 @@ void CheckShows(const runs::MeasuredRun& run, const runs::SignalName& row) {
   if (row.arm != 0 || simulated) return;
   size_t first = 0;
   while (std::isnan(values[first])) ++first;
-  const bool constant = std::all_of(values.begin(), values.end(), [&](double value) {
-    return std::isnan(value) || value == values[first];
-  });
+  const bool constant =
+      std::ranges::all_of(values, [&](double value) { return std::isnan(value) || value == values[first]; });
   if (!constant) return;
   Refuse(run.Place(first), row.ours,
          ShortestNumber(values[first]) + " " + run.units.UnitFor(row.unit, row.arm) +
@@ -214,8 +213,7 @@ bool IsCompared(const runs::MeasuredRun& run, model::Channel channel) {
 }
 
 size_t CountValid(const std::vector<double>& values) {
-  return static_cast<size_t>(
-      std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
+  return static_cast<size_t>(std::ranges::count_if(values, [](double value) { return !std::isnan(value); }));
 }
 
 size_t CountValid(const RunData& run) {
@@ -225,18 +223,18 @@ size_t CountValid(const RunData& run) {
 }
 
 bool HaveOil(const std::vector<const RunData*>& runs) {
-  return std::any_of(runs.begin(), runs.end(), [](const RunData* run) {
+  return std::ranges::any_of(runs, [](const RunData* run) {
     const auto is_pressure = [](const SignalData& signal) {
       return signal.channel == model::Channel::kP1 || signal.channel == model::Channel::kP2;
     };
-    return !run->stimulus.bypass || std::any_of(run->signals.begin(), run->signals.end(), is_pressure);
+    return !run->stimulus.bypass || std::ranges::any_of(run->signals, is_pressure);
   });
 }
 
 bool AreDriven(const std::vector<const RunData*>& runs) {
-  return std::any_of(runs.begin(), runs.end(), [](const RunData* run) {
+  return std::ranges::any_of(runs, [](const RunData* run) {
     const std::vector<double>& command = run->stimulus.voltage;
-    return std::any_of(command.begin(), command.end(), [](double v) { return v != 0; });
+    return std::ranges::any_of(command, [](double v) { return v != 0; });
   });
 }
 
@@ -306,8 +304,8 @@ constexpr double kNoSuchValue = 1e15;
 void CheckCells(const runs::MeasuredRun& run) {
   for (const runs::SignalName& row : runs::kSignals) {
     const std::vector<double>& values = (run.*row.signal).values;
-    const auto bad = std::find_if(values.begin(), values.end(),
-                                  [](double value) { return std::abs(value) > kNoSuchValue; });
+    const auto bad =
+        std::ranges::find_if(values, [](double value) { return std::abs(value) > kNoSuchValue; });
     if (bad == values.end()) continue;
     Refuse(run.Place(static_cast<size_t>(bad - values.begin())), row.ours, ShortestNumber(*bad),
            "-1e15 to 1e15: a damaged cell? Empty it, or write nan");

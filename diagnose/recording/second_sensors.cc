@@ -46,7 +46,7 @@ struct SensorPair {
 
   bool Have(const Run& run) const {
     return (run.*second).measured() &&
-           std::all_of(first.begin(), first.end(), [&](SignalOfRun one) { return (run.*one).measured(); });
+           std::ranges::all_of(first, [&](SignalOfRun one) { return (run.*one).measured(); });
   }
   double First(const RunBlock& block) const {
     const Run& run = *block.run;
@@ -176,7 +176,7 @@ std::vector<SameSensors> SensorsOf(const SensorPair& pair, const std::vector<Run
   for (size_t r = 0; r < runs.size(); ++r) {
     if (!pair.Have(runs[r])) continue;
     const runs::ColumnSource& source = (runs[r].*pair.second).source;
-    const auto same = std::find_if(recorders.begin(), recorders.end(), [&](const SameSensors& one) {
+    const auto same = std::ranges::find_if(recorders, [&](const SameSensors& one) {
       const runs::ColumnSource& other = (runs[one.runs.front()].*pair.second).source;
       return other.column == source.column && other.scale == source.scale;
     });
@@ -193,7 +193,7 @@ std::vector<double> Earlier(const std::vector<double>& time, const std::vector<d
   std::vector<double> moved(values.size(), std::numeric_limits<double>::quiet_NaN());
   for (size_t k = 0; k < moved.size(); ++k) {
     const double at = time[k] + late;
-    const auto after = std::upper_bound(time.begin(), time.end(), at);
+    const auto after = std::ranges::upper_bound(time, at);
     if (after == time.begin() || after == time.end()) continue;
     const bool nearer = *after - at < at - *(after - 1);
     moved[k] = values[static_cast<size_t>(after - time.begin()) - (nearer ? 0 : 1)];

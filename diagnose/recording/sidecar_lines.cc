@@ -76,7 +76,7 @@ Run SourcesOf(const Run& run) {
 }  // namespace
 
 std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const Run& run) {
-  const bool known = std::all_of(mistakes.begin(), mistakes.end(), [](const RecordingMistake& mistake) {
+  const bool known = std::ranges::all_of(mistakes, [](const RecordingMistake& mistake) {
     return mistake.IsSign() || mistake.factors.empty() || !mistake.unit.empty();
   });
   if (!known) return "";

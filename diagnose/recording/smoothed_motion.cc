@@ -72,7 +72,7 @@ class Quintics : public trajectory::Trajectory {
     return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
   }
   size_t After(double t) const {
-    return static_cast<size_t>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin());
+    return static_cast<size_t>(std::ranges::upper_bound(times_, t) - times_.begin());
   }
 
   std::vector<double> times_;
@@ -109,7 +109,7 @@ class Smoother {
       : time_(time), angle_(angle), rate_(rate), angle_noise_(angle_noise) {
     unit_ = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
     rate_noise_ = rate_noise * unit_;
-    first_angle_ = *std::find_if(angle.begin(), angle.end(), [](double a) { return !std::isnan(a); });
+    first_angle_ = *std::ranges::find_if(angle, [](double a) { return !std::isnan(a); });
     for (const double a : angle) {
       if (!std::isnan(a)) range_ = std::max(range_, std::abs(a - first_angle_));
     }
@@ -174,7 +174,7 @@ std::unique_ptr<trajectory::Trajectory> SmoothMotion(const std::vector<double>& 
                                                      const std::vector<double>& rate, double rate_noise) {
   Smoother smoother(time, angle, angle_noise, rate, rate_noise);
   if (smoother.range() == 0) {
-    const double held = *std::find_if(angle.begin(), angle.end(), [](double a) { return !std::isnan(a); });
+    const double held = *std::ranges::find_if(angle, [](double a) { return !std::isnan(a); });
     return std::make_unique<Quintics>(std::vector<double>{time.front()},
                                       std::vector<MotionState>{{held, 0, 0}}, 1.0);
   }

@@ -6,7 +6,6 @@
 #include "base/maths/spread.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr double kFinest = 1e-3;        // s between samples

@@ -9,7 +9,6 @@
 #include "model/terms/state.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr size_t kFewestCompared = 12;  // samples

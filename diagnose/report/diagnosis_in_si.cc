@@ -126,7 +126,7 @@ void ShowTheMotorAlone(Diagnosis* diagnosis) {
   const auto closures = [](std::string* id) { Replace("closure.pump_torque", "closure.motor_torque", id); };
   for (Location& location : diagnosis->location) name(&location.balance);
   for (WeightedSet& one : diagnosis->explanations)
-    std::for_each(one.changes.begin(), one.changes.end(), [&](std::string& change) { closures(&change); });
+    std::ranges::for_each(one.changes, [&](std::string& change) { closures(&change); });
   for (Closure& closure : diagnosis->closures) closures(&closure.id);
   for (Candidate& candidate : diagnosis->candidates) closures(&candidate.id);
   for (ChoiceWithout& choice : diagnosis->choices) closures(&choice.chosen);

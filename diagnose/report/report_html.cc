@@ -75,7 +75,7 @@ std::string Head(const Diagnosis& diagnosis) {
               : "held out, and not fitted: " + Joined(diagnosis.held_out_runs) + ".";
   std::string verdict = VerdictName(diagnosis.verdict);
   const bool open = IsOpen(diagnosis.verdict);
-  std::replace(verdict.begin(), verdict.end(), '_', ' ');
+  std::ranges::replace(verdict, '_', ' ');
   const auto [first, rest] = FirstSentence(diagnosis.sentence);
   const std::string gap = GapInWords(diagnosis);
   return "<h1>" + page::TypesetHtml(first) + "</h1>\n<p class=\"verdict" + (open ? " unexplained" : "") +

@@ -11,7 +11,7 @@
 namespace hydro::diagnose {
 
 std::string WithBlanks(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
+  std::ranges::replace(name, '_', ' ');
   return name;
 }
 

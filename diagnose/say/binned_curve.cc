@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace hydro::diagnose {
-
 namespace {
 
 // A bin with fewer points has no useful scatter. Nor has a bin whose points come from one moment, where it
@@ -43,8 +42,7 @@ void AddMean(const std::vector<CurvePoint>& points, size_t first, size_t end, Bi
 BinnedCurve Binned(std::vector<CurvePoint> points, double most, double by_range) {
   BinnedCurve curve;
   if (points.size() < kFewestPoints) return curve;
-  std::stable_sort(points.begin(), points.end(),
-                   [](const CurvePoint& a, const CurvePoint& b) { return a.at < b.at; });
+  std::ranges::stable_sort(points, [](const CurvePoint& a, const CurvePoint& b) { return a.at < b.at; });
   const double count = static_cast<double>(points.size()), low = points.front().at,
                range = points.back().at - low;
   if (!(range > 0)) return curve;

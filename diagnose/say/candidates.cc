@@ -11,7 +11,6 @@
 #include "diagnose/say/claims.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr double kNotTried = std::numeric_limits<double>::quiet_NaN();
@@ -24,8 +23,7 @@ std::string GapOfWindows(const std::vector<WindowGap>& windows) {
 bool AddsToBest(const ProvedSet& set, const ProvedSet& best) {
   const std::vector<Change> found = best.Effects();
   return !found.empty() && set.Effects().size() > found.size() &&
-         std::all_of(found.begin(), found.end(),
-                     [&](const Change& change) { return set.hypothesis.Has(change); });
+         std::ranges::all_of(found, [&](const Change& change) { return set.hypothesis.Has(change); });
 }
 
 class Ranking {
@@ -119,8 +117,8 @@ void Sort(std::vector<Candidate>* candidates) {
     const double chance = std::isnan(c.p_value) ? 1 : c.p_value;
     return std::make_tuple(!c.rejected_because.empty(), -c.weight, gap, chance);
   };
-  std::stable_sort(candidates->begin(), candidates->end(),
-                   [&](const Candidate& a, const Candidate& b) { return order(a) < order(b); });
+  std::ranges::stable_sort(*candidates,
+                           [&](const Candidate& a, const Candidate& b) { return order(a) < order(b); });
 }
 
 // What the other runs choose: their windows replace those of the sets.
@@ -155,7 +153,7 @@ std::vector<Candidate> CandidatesOf(const ProofContext& context, const Proof& pr
   std::vector<std::string> claims = ranking.Claims();
   for (const Change& change : context.changes) {
     const std::string label = change.Label();
-    if (std::find(claims.begin(), claims.end(), label) == claims.end()) claims.push_back(label);
+    if (std::ranges::find(claims, label) == claims.end()) claims.push_back(label);
   }
   std::vector<Candidate> candidates;
   for (const std::string& claim : claims) {
@@ -172,7 +170,7 @@ std::vector<ChoiceWithout> ChoicesWithoutEach(const Proof& proof) {
   constexpr size_t kFewestInTurn = 3;
   std::vector<std::string> runs;
   for (const std::string& run : proof.runs) {
-    if (std::find(runs.begin(), runs.end(), run) == runs.end()) runs.push_back(run);
+    if (std::ranges::find(runs, run) == runs.end()) runs.push_back(run);
   }
   if (runs.size() < kFewestInTurn) return {};
   const std::string found = ClaimOf(proof.Found());

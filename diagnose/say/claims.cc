@@ -7,7 +7,6 @@
 #include "diagnose/prove/proof_context.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The label as Change::Label() writes it: "sensor.skew (p1)".
@@ -18,7 +17,7 @@ std::string LabelOf(const std::string& change) {
 }
 
 std::string JoinedClaim(std::vector<std::string> said) {
-  std::sort(said.begin(), said.end());
+  std::ranges::sort(said);
   return said.empty() ? kAsGiven : Joined(said, " + ");
 }
 
@@ -63,7 +62,7 @@ double WeightOf(const Change& change, const std::vector<WeightedSet>& explanatio
   const std::string name = NameInSets(change);
   double sum = 0;
   for (const WeightedSet& one : explanations) {
-    const bool has = std::any_of(one.changes.begin(), one.changes.end(), [&](const std::string& other) {
+    const bool has = std::ranges::any_of(one.changes, [&](const std::string& other) {
       return other == name || (IsClosureEffect(name) && other.starts_with(name + "("));
     });
     sum += has ? one.weight : 0;

@@ -14,9 +14,8 @@ namespace hydro::diagnose {
 
 std::string RemarkOnCommonFactor(const ProofContext& context, const Proof& proof, const Diagnosis& d) {
   const std::vector<model::BaseParameter>& base = model::BaseParameters();
-  const auto yardstick = std::find_if(base.begin(), base.end(), [&](const model::BaseParameter& one) {
-    return IsYardstick(one.member, context.runs);
-  });
+  const auto yardstick = std::ranges::find_if(
+      base, [&](const model::BaseParameter& one) { return IsYardstick(one.member, context.runs); });
   if (yardstick == base.end()) return "";
   std::vector<const ChangedParameter*> torques;
   double logarithms = 0;

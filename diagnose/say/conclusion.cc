@@ -24,7 +24,6 @@
 #include "model/effects/catalogue.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 void NameRuns(const ProofContext& context, Diagnosis* d) {

@@ -10,7 +10,6 @@
 #include "model/terms/state.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr std::array<std::pair<size_t, model::Channel>, 4> kMoving = {
@@ -49,7 +48,7 @@ double GrowthIn(const model::ModelDescription& model, const RunData& run) {
 double ErrorGrowth(const model::ModelDescription& model, const std::vector<const RunData*>& runs, int jobs) {
   std::vector<double> growths(runs.size(), 1);
   ParallelFor(runs.size(), jobs, [&](size_t r) { growths[r] = GrowthIn(model, *runs[r]); });
-  return growths.empty() ? 1 : *std::max_element(growths.begin(), growths.end());
+  return growths.empty() ? 1 : *std::ranges::max_element(growths);
 }
 
 }  // namespace hydro::diagnose

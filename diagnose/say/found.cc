@@ -14,7 +14,6 @@
 #include "diagnose/say/shown.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
@@ -29,12 +28,10 @@ FoundEffect Describe(const Change& change, const model::ModelDescription& model,
   found.summary = info.summary;
   found.equation = info.equation;
   for (const auto& [name, value] : change.names) found.names.push_back(name + " = " + value);
-  const auto effect = std::find_if(model.effects.begin(), model.effects.end(),
-                                   [&](const auto& one) { return one.id == info.id; });
+  const auto effect = std::ranges::find_if(model.effects, [&](const auto& one) { return one.id == info.id; });
   for (const model::ParameterInfo& parameter : info.parameters) {
-    const auto fitted = std::find_if(free.begin(), free.end(), [&](const FreeParameter& one) {
-      return one.name == info.id + "." + parameter.name;
-    });
+    const auto fitted = std::ranges::find_if(
+        free, [&](const FreeParameter& one) { return one.name == info.id + "." + parameter.name; });
     if (fitted != free.end()) {
       const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
       found.parameters.push_back(
@@ -99,8 +96,8 @@ bool MayBeTrue(const ProvedSet& set, const Diagnosis& d) {
   if (set.HasCurve()) return false;
   if (d.explanations.empty()) return true;
   const std::vector<Change> effects = set.Effects();
-  const bool unseen = std::any_of(effects.begin(), effects.end(),
-                                  [](const Change& change) { return IsUnseenByBalances(change.effect); });
+  const bool unseen =
+      std::ranges::any_of(effects, [](const Change& change) { return IsUnseenByBalances(change.effect); });
   if (unseen) return true;
   const std::string claim = ClaimOf(set.hypothesis);
   for (size_t i = 0; i < std::min(d.set_90, d.explanations.size()); ++i) {
@@ -168,8 +165,7 @@ std::vector<model::ModelDescription> DescribeFound(const ProofContext& context, 
     found.weight = WeightOf(change, d->explanations);
     for (const size_t place : TiesOf(change, proof, *d)) {
       const std::string label = InPlace(proof.sets[place], proof.Best());
-      const bool there =
-          std::find(found.tied_with.begin(), found.tied_with.end(), label) != found.tied_with.end();
+      const bool there = std::ranges::find(found.tied_with, label) != found.tied_with.end();
       if (there) continue;
       found.tied_with.push_back(label);
       models.push_back(proof.sets[place].hypothesis.model);

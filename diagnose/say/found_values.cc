@@ -11,7 +11,6 @@
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // A number of the model as given, and its value in the model that was found.
@@ -58,12 +57,11 @@ ChangedParameter DescribeParameter(const OwnNumber& number, const Interval& inte
 bool ExceedsTorqueLimit(const ProofContext& context, const model::Parameters& model) {
   constexpr double kRounding = 1e-3;  // of a recorded command
   const auto exceeds = [&](const RunData* run) {
-    return std::any_of(run->stimulus.voltage.begin(), run->stimulus.voltage.end(), [&](double volts) {
+    return std::ranges::any_of(run->stimulus.voltage, [&](double volts) {
       return std::abs(model.k_1 * volts) > (1 + kRounding) * model.T_pmax;
     });
   };
-  return std::any_of(context.runs.begin(), context.runs.end(), exceeds) ||
-         std::any_of(context.held_out.begin(), context.held_out.end(), exceeds);
+  return std::ranges::any_of(context.runs, exceeds) || std::ranges::any_of(context.held_out, exceeds);
 }
 
 // Which of the free numbers the fitted runs do not show, whatever the others are: nothing in the runs depends
@@ -110,8 +108,8 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
                        ExceedsTorqueLimit(context, hypothesis.model.parameters);
   std::vector<std::string> unsure, resting;
   for (const OwnNumber& number : OwnNumbers(context.given, hypothesis.model)) {
-    const auto it = std::find_if(free.begin(), free.end(),
-                                 [&](const FreeParameter& one) { return one.name == number.name; });
+    const auto it =
+        std::ranges::find_if(free, [&](const FreeParameter& one) { return one.name == number.name; });
     const auto place = static_cast<size_t>(it - free.begin());
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     const bool held = it == free.end();

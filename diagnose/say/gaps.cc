@@ -8,7 +8,6 @@
 #include "diagnose/recording/windows.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // s: how far a pressure loop has to look ahead, how far a position loop has to, and a time over which every

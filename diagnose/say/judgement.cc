@@ -13,7 +13,6 @@
 #include "diagnose/say/claims.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // In noise units, over whole runs, which have many residuals: the noise is known to about 10 %.
@@ -48,7 +47,7 @@ double MayBeLeft(double times) { return std::hypot(1, std::sqrt(kNoiseAndAsMuchA
 
 // The first horizon that leaves more than noise; null: none.
 const HorizonGap* OpenHorizon(const Diagnosis& d, const HorizonGap& near, bool exact) {
-  const auto open = std::find_if(d.horizons.begin(), d.horizons.end(), [&](const HorizonGap& one) {
+  const auto open = std::ranges::find_if(d.horizons, [&](const HorizonGap& one) {
     if (one.seconds < near.seconds || !std::isfinite(one.typical.after)) return false;
     return !IsClosed(d, one.typical, MayBeLeft(one.seconds / near.seconds), exact);
   });
@@ -78,8 +77,7 @@ double OwedTo(const std::string& id, const ScoredSet& one, const std::vector<Sco
   ChangeSet rest = one.set;
   std::erase_if(rest, [&](const std::string& change) { return EffectOf(change) == id; });
   if (rest.size() == one.set.size()) return 0;
-  const auto same =
-      std::find_if(scores.begin(), scores.end(), [&](const ScoredSet& other) { return other.set == rest; });
+  const auto same = std::ranges::find_if(scores, [&](const ScoredSet& other) { return other.set == rest; });
   return rest.empty() ? one.score : same == scores.end() ? 0 : one.score - same->score;
 }
 
@@ -89,11 +87,11 @@ bool IsSpokenFor(const std::string& id, const Diagnosis& d, const std::vector<Sc
   constexpr double kAWord = 0.05;
   double weight = 0;
   for (const WeightedSet& one : d.explanations) {
-    const bool has = std::any_of(one.changes.begin(), one.changes.end(),
-                                 [&](const std::string& change) { return EffectOf(change) == id; });
+    const bool has =
+        std::ranges::any_of(one.changes, [&](const std::string& change) { return EffectOf(change) == id; });
     weight += has ? one.weight : 0;
   }
-  return weight >= kAWord || std::any_of(scores.begin(), scores.end(), [&](const ScoredSet& one) {
+  return weight >= kAWord || std::ranges::any_of(scores, [&](const ScoredSet& one) {
            const double least = scores.front().score + kTemperature * std::log(kAWord);  // the best first
            return one.score > least && OwedTo(id, one, scores) > 0;
          });
@@ -103,12 +101,11 @@ bool IsSpokenFor(const std::string& id, const Diagnosis& d, const std::vector<Sc
 bool HasOneWitness(const Diagnosis& d, const std::vector<ScoredSet>& scores) {
   if (d.effects.empty() || d.explanations.empty()) return false;
   const auto said = [&](const std::string& id) { return IsSpokenFor(id, d, scores); };
-  return std::none_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
+  return std::ranges::none_of(d.effects, [&](const FoundEffect& effect) {
     if (IsUnseenByBalances(effect.id) || said(effect.id)) return true;
     // Where other values do as well, even the windows do not say that anything is missing.
     const auto values = [](const std::string& tied) { return tied.find('.') == std::string::npos; };
-    return std::none_of(effect.tied_with.begin(), effect.tied_with.end(), values) &&
-           std::any_of(effect.tied_with.begin(), effect.tied_with.end(), said);
+    return std::ranges::none_of(effect.tied_with, values) && std::ranges::any_of(effect.tied_with, said);
   });
 }
 
@@ -116,18 +113,15 @@ bool HasOneWitness(const Diagnosis& d, const std::vector<ScoredSet>& scores) {
 // signals late, or the command early. The balances allow for that and a simulation does not, so if only
 // simulation speaks for such a time, the recorder causes it.
 bool IsTheRecorders(const Diagnosis& d, double sample) {
-  return std::all_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
+  return std::ranges::all_of(d.effects, [&](const FoundEffect& effect) {
     const model::EffectInfo* info = model::FindEffect(effect.id);
     return info != nullptr && !effect.id.starts_with("sensor.") &&
-           std::any_of(info->parameters.begin(), info->parameters.end(),
-                       [&](const model::ParameterInfo& parameter) {
-                         return parameter.role == model::Role::kTime &&
-                                std::any_of(effect.parameters.begin(), effect.parameters.end(),
-                                            [&](const Estimated& one) {
-                                              return one.name == parameter.name &&
-                                                     std::abs(one.value) <= kRecorderSamples * sample;
-                                            });
-                       });
+           std::ranges::any_of(info->parameters, [&](const model::ParameterInfo& parameter) {
+             return parameter.role == model::Role::kTime &&
+                    std::ranges::any_of(effect.parameters, [&](const Estimated& one) {
+                      return one.name == parameter.name && std::abs(one.value) <= kRecorderSamples * sample;
+                    });
+           });
   });
 }
 
@@ -183,8 +177,8 @@ Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<Scor
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
   if (one_witness && IsTheRecorders(d, runs.sample)) return Verdict::kUnexplained;
-  const bool tied = std::any_of(d.effects.begin(), d.effects.end(),
-                                [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
+  const bool tied =
+      std::ranges::any_of(d.effects, [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
   return tied ? Verdict::kTied : Verdict::kNamed;
 }
 

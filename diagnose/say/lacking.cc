@@ -8,7 +8,6 @@
 #include "diagnose/balances/test_functions.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr std::array<const char*, kBalanceKinds> kBalanceNames = {"pump_torque", "flow_1",  "flow_2",

@@ -7,7 +7,6 @@
 #include "diagnose/say/seen.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr BalanceKind kPlaces[] = {BalanceKind::kTorque, BalanceKind::kFlow1, BalanceKind::kFlow2,
@@ -33,7 +32,7 @@ double TotalOf(const AllSeen& seen) {
 // The index in kPlaces of the largest.
 size_t Largest(const AllSeen& seen) {
   const auto less = [](const Seen& a, const Seen& b) { return a.energy < b.energy; };
-  return static_cast<size_t>(std::max_element(seen.begin(), seen.end(), less) - seen.begin());
+  return static_cast<size_t>(std::ranges::max_element(seen, less) - seen.begin());
 }
 
 // Adds up the shares of one place that was found in several ways. The largest share says where.
@@ -173,8 +172,7 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
   CorrectOffsets(model, runs, jobs, &placement);
   for (size_t place = 0; place < std::size(kPlaces); ++place) PlaceBalance(place, &placement);
   std::vector<Location>& location = placement.result.location;
-  std::stable_sort(location.begin(), location.end(),
-                   [](const Location& a, const Location& b) { return a.share > b.share; });
+  std::ranges::stable_sort(location, [](const Location& a, const Location& b) { return a.share > b.share; });
   if (!location.empty() && location.front().balance != "sensor")
     Tabulate(Largest(placement.seen), &placement);
   return std::move(placement.result);

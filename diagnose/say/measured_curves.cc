@@ -7,7 +7,6 @@
 #include "diagnose/say/variables.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using model::Parameters;
@@ -144,8 +143,8 @@ OverVariable LeftOver(std::vector<CurvePoint> points) {
 // An angle that no sensor saw begins anywhere in each run, so that curves of different runs cannot be
 // superposed.
 bool SeeAngles(const std::vector<LackingRun>& runs) {
-  return std::all_of(runs.begin(), runs.end(),
-                     [](const LackingRun& run) { return run.motion.Of(GridChannel::kAngle).measured(); });
+  return std::ranges::all_of(
+      runs, [](const LackingRun& run) { return run.motion.Of(GridChannel::kAngle).measured(); });
 }
 
 }  // namespace
@@ -163,8 +162,8 @@ std::vector<MeasuredCurve> MeasuredCurves(const model::ModelDescription& given,
   for (const Element& element : AllElements()) {
     const BalanceKind balance = element.parts.front().balance;
     const std::vector<Variable> variables = MotionVariables(lacking, balance, found.units, false);
-    const auto variable = std::find_if(variables.begin(), variables.end(),
-                                       [&](const Variable& one) { return one.name == element.variable; });
+    const auto variable =
+        std::ranges::find_if(variables, [&](const Variable& one) { return one.name == element.variable; });
     if (variable == variables.end()) continue;
     const std::vector<BalanceSeries> by_given = AlongRuns(element, given, lacking, base_given, jobs),
                                      by_found = AlongRuns(element, found, lacking, base_found, jobs);
@@ -181,7 +180,7 @@ std::vector<MeasuredCurve> MeasuredCurves(const model::ModelDescription& given,
 std::optional<MeasuredCurve> TermOf(const model::ModelDescription& model, const std::string& effect,
                                     const std::vector<const RunData*>& runs, int jobs) {
   const auto is_it = [&](const model::EffectDescription& one) { return one.id == effect; };
-  const auto description = std::find_if(model.effects.begin(), model.effects.end(), is_it);
+  const auto description = std::ranges::find_if(model.effects, is_it);
   if (description == model.effects.end()) return std::nullopt;
   const Sampling sampling = SamplingOf(*description);
   model::ModelDescription without = model;

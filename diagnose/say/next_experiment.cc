@@ -13,7 +13,6 @@
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr size_t kStride = 5;       // one sample in this many is compared
@@ -127,13 +126,13 @@ NextExperiment DesignNextExperiment(const std::vector<model::ModelDescription>& 
       trial.separation = Separation(rivals, trial, rig, absorb).value_or(-1);
     }
     std::erase_if(trials, [](const Trial& trial) { return trial.separation < kWorthwhile; });
-    std::stable_sort(trials.begin(), trials.end(),
-                     [](const Trial& a, const Trial& b) { return a.separation > b.separation; });
+    std::ranges::stable_sort(trials,
+                             [](const Trial& a, const Trial& b) { return a.separation > b.separation; });
   };
   judge(false);
   std::vector<Trial> finalists;
   for (const Trial& trial : trials) {
-    const auto alike = std::count_if(finalists.begin(), finalists.end(), [&](const Trial& other) {
+    const auto alike = std::ranges::count_if(finalists, [&](const Trial& other) {
       return other.shaft == trial.shaft && other.arm_angle == trial.arm_angle && other.bypass == trial.bypass;
     });
     if (static_cast<size_t>(alike) < kFinalExperiments) finalists.push_back(trial);

@@ -13,7 +13,6 @@
 #include "diagnose/recording/windows.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // Every third window of a run judges, and the balances do not see it. With eight of each run, a difference
@@ -30,7 +29,7 @@ RunData WithoutWindows(const RunData& run, const std::vector<const RunData*>& wi
   const auto take = [&](std::vector<double>* values) {
     for (size_t i = 0; i < values->size(); ++i) {
       const double time = run.stimulus.time[i];
-      const bool within = std::any_of(windows.begin(), windows.end(), [time](const RunData* window) {
+      const bool within = std::ranges::any_of(windows, [time](const RunData* window) {
         return time >= window->stimulus.time.front() && time <= window->stimulus.time.back();
       });
       if (within) (*values)[i] = std::numeric_limits<double>::quiet_NaN();
@@ -69,7 +68,7 @@ struct CutRuns {
       possible = possible && !judge.empty();
       rest.push_back(WithoutWindows(*runs[r], judge));
       for (RunData& window : all) {
-        if (std::find(judge.begin(), judge.end(), &window) == judge.end()) continue;
+        if (std::ranges::find(judge, &window) == judge.end()) continue;
         chosen.emplace_back(windows.size(), r);
         windows.push_back(std::move(window));
       }

@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr size_t kMostPoints = 1200;
@@ -114,9 +113,8 @@ std::optional<FoundStretch> StretchOf(const ProofContext& context, const Proof& 
     responses[r] = {ResponseOf(with, run, start), ResponseOf(without, run, start)};
     places[r] = MostIn(run, responses[r]);
   });
-  const auto most =
-      std::max_element(places.begin(), places.end(),
-                       [](const StretchPlace& a, const StretchPlace& b) { return a.apart < b.apart; });
+  const auto most = std::ranges::max_element(
+      places, [](const StretchPlace& a, const StretchPlace& b) { return a.apart < b.apart; });
   if (most == places.end() || !(most->apart > 0)) return std::nullopt;
   const auto r = static_cast<size_t>(most - places.begin());
   const RunData& run = *context.runs[r];

@@ -6,7 +6,6 @@
 #include "base/number_text.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // s, nominal lengths of blocks: small and slow effects show best in long blocks, quick ones in short blocks.
@@ -60,8 +59,7 @@ Stretch Densest(const BinnedCurve& curve, bool by_size) {
   const auto size = [by_size](double at) { return by_size ? std::abs(at) : at; };
   std::vector<size_t> order(curve.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return size(curve.at[a]) < size(curve.at[b]); });
+  std::ranges::stable_sort(order, [&](size_t a, size_t b) { return size(curve.at[a]) < size(curve.at[b]); });
   // A mean of twice its error may be due to chance.
   const auto share = [&](size_t bin) {
     return curve.count[bin] *
@@ -129,8 +127,8 @@ std::vector<Dependence> Ranked(const std::vector<Block>& blocks, std::vector<Var
     ranked.push_back(std::move(d));
   }
   const double enough = std::max(best - kPlainly, 1 - std::max(kPlainly, (1 - best) / kFarLess));
-  const auto simplest = std::find_if(ranked.begin(), ranked.end(),
-                                     [enough](const Dependence& d) { return d.explained >= enough; });
+  const auto simplest =
+      std::ranges::find_if(ranked, [enough](const Dependence& d) { return d.explained >= enough; });
   std::rotate(ranked.begin(), simplest, simplest + 1);
   std::stable_sort(ranked.begin() + 1, ranked.end(),
                    [](const Dependence& a, const Dependence& b) { return a.explained > b.explained; });
@@ -177,11 +175,9 @@ std::vector<Window> WindowsOf(const std::vector<Block>& blocks, const std::vecto
       stretches.back().second.to = next;
       stretches.back().first += EnergyOfBlock(block);
     }
-    std::stable_sort(stretches.begin(), stretches.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::ranges::stable_sort(stretches, [](const auto& a, const auto& b) { return a.first > b.first; });
     if (stretches.size() > kMostStretches) stretches.resize(kMostStretches);
-    std::sort(stretches.begin(), stretches.end(),
-              [](const auto& a, const auto& b) { return a.second.from < b.second.from; });
+    std::ranges::sort(stretches, [](const auto& a, const auto& b) { return a.second.from < b.second.from; });
     for (const auto& [energy, window] : stretches) windows.push_back(window);
   }
   return windows;

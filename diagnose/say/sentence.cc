@@ -9,7 +9,6 @@
 #include "diagnose/say/claims.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 std::string WordsFor(const std::string& rival) {
@@ -72,8 +71,7 @@ std::string Found(const std::string& missing, const std::string& values,
 }
 
 bool Tied(const Diagnosis& d) {
-  return std::any_of(d.effects.begin(), d.effects.end(),
-                     [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
+  return std::ranges::any_of(d.effects, [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
 }
 
 // Whether the gap falls so far that a reader sees it in the digits. From a gap that the model cannot follow,
@@ -196,8 +194,8 @@ std::string ChangeInWords(const std::string& change) {
   std::string of = change.substr(8, open == std::string::npos ? open : open - 8), over;
   if (open != std::string::npos && close != std::string::npos)
     over = " over " + change.substr(open + 1, close - open - 1);
-  std::replace(of.begin(), of.end(), '_', ' ');
-  std::replace(over.begin(), over.end(), '_', ' ');
+  std::ranges::replace(of, '_', ' ');
+  std::ranges::replace(over, '_', ' ');
   return "an unknown curve" + over + " in " + of;
 }
 

@@ -7,7 +7,6 @@
 #include "base/number_text.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr double kDuration = 3;  // s

@@ -13,7 +13,6 @@
 #include "diagnose/say/claims.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 // The names of an explanation's effects. A curve has one name whatever it acts on, because the proof writes
@@ -23,7 +22,7 @@ std::vector<std::string> EffectsOf(const std::vector<std::string>& changes) {
   for (const std::string& change : changes) {
     if (IsMissingTerm(change)) effects.push_back(IsClosureEffect(change) ? "closure" : change);
   }
-  std::sort(effects.begin(), effects.end());
+  std::ranges::sort(effects);
   effects.erase(std::unique(effects.begin(), effects.end()), effects.end());
   return effects;
 }
@@ -56,20 +55,18 @@ std::map<std::vector<std::string>, double> ProvedWeights(const Proof& proof) {
 }  // namespace
 
 void HearBothWitnesses(const Proof& proof, Diagnosis* d) {
-  const bool one_class =
-      std::any_of(d->explanations.begin(), d->explanations.end(), [](const WeightedSet& one) {
-        return std::find(one.changes.begin(), one.changes.end(), kSomeOil) != one.changes.end();
-      });
+  const bool one_class = std::ranges::any_of(d->explanations, [](const WeightedSet& one) {
+    return std::ranges::find(one.changes, kSomeOil) != one.changes.end();
+  });
   if (one_class || d->explanations.empty() || !proof.Best().tested()) return;
   for (WeightedSet& one : d->explanations) one.weight *= 0.5;
   for (const auto& [names, weight] : ProvedWeights(proof)) {
     const std::vector<std::string>& effects = names;
-    auto same = std::find_if(d->explanations.begin(), d->explanations.end(),
-                             [&](const WeightedSet& one) { return EffectsOf(one.changes) == effects; });
+    auto same = std::ranges::find_if(
+        d->explanations, [&](const WeightedSet& one) { return EffectsOf(one.changes) == effects; });
     if (same == d->explanations.end()) {
-      const auto proved = std::find_if(proof.sets.begin(), proof.sets.end(), [&](const ProvedSet& set) {
-        return EffectsOf(NamesOf(set)) == effects;
-      });
+      const auto proved = std::ranges::find_if(
+          proof.sets, [&](const ProvedSet& set) { return EffectsOf(NamesOf(set)) == effects; });
       same = d->explanations.insert(same, {NamesOf(*proved), 0});
     }
     same->weight += 0.5 * weight;

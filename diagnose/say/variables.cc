@@ -5,7 +5,6 @@
 #include "base/number_text.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 using Known = model::KnownMotion;
@@ -68,7 +67,7 @@ Variable Along(const std::vector<LackingRun>& runs, Variable variable,
 }
 
 bool Pressures(const std::vector<LackingRun>& runs) {
-  return std::any_of(runs.begin(), runs.end(), [](const LackingRun& run) { return run.motion.pressures; });
+  return std::ranges::any_of(runs, [](const LackingRun& run) { return run.motion.pressures; });
 }
 
 // A function of the held command, smoothed as the balances are.
