@@ -1,7 +1,6 @@
 #include "diagnose/recording_first.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

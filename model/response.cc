@@ -32,9 +32,7 @@ double& EffectParameter::In(ModelDescription* model) const {
   if (place.has_value()) return owner.lists.at(name).at(*place);
   const auto stated = owner.parameters.find(name);
   if (stated != owner.parameters.end()) return stated->second;
-  const std::vector<ParameterInfo>& infos = FindEffect(owner)->parameters;
-  const auto info = std::ranges::find(infos, name, &ParameterInfo::name);
-  return owner.parameters[name] = NumberOf(owner, *info, model->parameters);
+  return owner.parameters[name] = NumberOf(owner, ParameterOf(owner, name), model->parameters);
 }
 
 std::vector<EffectParameter> EffectParameters(const ModelDescription& model) {

@@ -72,7 +72,6 @@ struct Response {
 struct ResponseOptions {
   ChannelSet channels = {true, true, true, true, true, true};
   double relative_tolerance = 1e-6;
-  bool repeated_effects = false;  // as in ActuatorOptions
   // A simulation with more steps than these and kStepsPerSecond (response_pass.h) throws ModelError, so that
   // a far too stiff model does not take hours.
   double most_steps_per_sample = 20;

@@ -69,7 +69,6 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   actuator.shaft = stimulus.shaft;
   actuator.bypass = stimulus.bypass;
   actuator.begin = stimulus.begin;
-  actuator.repeated_effects = options.repeated_effects;
   actuator.motion = stimulus.motion;
   actuator.arm_angle = stimulus.shaft == Shaft::kFree ? start[kArmAngle] : stimulus.arm_angle;
   Equations equations(model, actuator);

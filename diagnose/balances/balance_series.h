@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "diagnose/balances/rows.h"

@@ -52,14 +52,16 @@ void AddGivenEffects(ColumnMaker* maker) {
   const std::vector<model::EffectParameter> all = model::EffectParameters(given);
   for (size_t i = 0; i < all.size(); ++i) {
     if (!all[i].IsStated(given)) continue;
-    const std::string& id = given.effects[all[i].effect].id;
-    const bool phase = ParameterOf(id, all[i].name).role == model::Role::kPhase;
+    const model::EffectDescription& effect = given.effects[all[i].effect];
+    const model::ParameterInfo& info = ParameterOf(effect, all[i].name);
+    const bool phase = info.role == model::Role::kPhase;
     model::ModelDescription copy = given;
     const double value = all[i].In(&copy);
     const double deviation = DeviationOf(given, all[i]);
     if (deviation == 0 || (value == 0 && !phase)) continue;
-    ScanColumn known{id + "." + all[i].Label(), "", phase ? deviation : deviation / std::abs(value), false};
-    if (!phase && ParameterOf(id, all[i].name).min >= 0) known.value = known.name;
+    ScanColumn known{effect.id + "." + all[i].Label(), "", phase ? deviation : deviation / std::abs(value),
+                     false};
+    if (!phase && info.min >= 0) known.value = known.name;
     const int column = maker->Add(known, {.kind = ColumnMeaning::Kind::kGiven, .base = i});
     maker->works.back().push_back([maker, column, i, value, phase](size_t run) {
       const std::vector<BalanceSeries> found =

@@ -227,7 +227,7 @@ ColumnTable Make(ColumnSetup* setup, const std::vector<RunMotion>& runs, const s
     if (first && whole && UnitOf(maker, static_cast<int>(i)) > kNextToNothing) setup->units[i] = 0;
     const double unit = setup->units[i];
     if (meaning.kind == ColumnMeaning::Kind::kEffect) {
-      const std::string& effect = setup->variants[meaning.variant].at.id;
+      const model::EffectDescription& effect = setup->variants[meaning.variant].at;
       maker.table.columns[i].most = ParameterOf(effect, meaning.parameter).max / unit;
     }
     if (unit == 1) continue;

@@ -91,7 +91,7 @@ void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, i
     if (!(largest > 0) || !std::isfinite(largest)) return;
     if (pass == 1 || variant.is_time) return maker->Put(column, run, change, 1 / amount);
     // An effect that hardly acts in this run must not leave the range in which it means something.
-    const model::ParameterInfo& info = ParameterOf(variant.at.id, parameter);
+    const model::ParameterInfo& info = ParameterOf(variant.at, parameter);
     amount = std::min(amount * kSmallChange / largest, 0.5 * info.max);
   }
 }
@@ -229,7 +229,7 @@ std::vector<int> AddAmounts(ColumnMaker* maker, size_t v, Way way) {
   std::vector<int> columns;
   const bool first = maker->setup->units.empty();
   for (const std::string& amount : variant.amounts) {
-    const bool positive = ParameterOf(variant.at.id, amount).min >= 0;
+    const bool positive = ParameterOf(variant.at, amount).min >= 0;
     ColumnMeaning meaning{.kind = ColumnMeaning::Kind::kEffect, .variant = v, .parameter = amount, .unit = 0};
     if (way == Way::kReading && first) meaning.unit = ReadingUnit(*maker, variant, amount);
     columns.push_back(maker->Add({variant.set + ":" + amount, variant.set, 1, positive}, meaning));

@@ -63,11 +63,6 @@ std::vector<double> GridOf(const ParameterInfo& parameter, const Sizes& sizes, b
   return dense ? Denser(std::move(grid)) : grid;
 }
 
-const model::EffectInfo* InfoOf(const std::string& id) {
-  const model::CatalogueEntry* entry = model::FindCatalogueEntry(id);
-  return entry == nullptr ? nullptr : &entry->info;
-}
-
 // All combinations of the parameters' grid points, as descriptions.
 std::vector<EffectVariant> OnGrid(const EffectVariant& from, const model::EffectInfo& info,
                                   const Sizes& sizes) {
@@ -136,20 +131,10 @@ EffectVariant Open(const Change& change, const model::EffectInfo& info) {
 
 bool IsAmount(const ParameterInfo& parameter) { return IsSize(parameter) || IsWave(parameter); }
 
-const ParameterInfo& ParameterOf(const std::string& effect, const std::string& parameter) {
-  const model::EffectInfo* info = InfoOf(effect);
-  static const ParameterInfo kNone;
-  if (info == nullptr) return kNone;
-  for (const ParameterInfo& one : info->parameters) {
-    if (one.name == parameter) return one;
-  }
-  return kNone;
-}
-
 std::vector<EffectVariant> VariantsOf(const std::vector<Change>& changes, const Sizes& sizes) {
   std::vector<EffectVariant> variants;
   for (const Change& change : changes) {
-    const model::EffectInfo* info = change.effect.empty() ? nullptr : InfoOf(change.effect);
+    const model::EffectInfo* info = model::FindEffect(change.effect);
     if (info == nullptr) continue;
     const bool lists = std::ranges::any_of(
         info->parameters, [](const ParameterInfo& one) { return one.list != model::List::kNone; });

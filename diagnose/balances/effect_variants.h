@@ -44,7 +44,4 @@ std::vector<EffectVariant> VariantsOf(const std::vector<Change>& changes, const 
 // of a wave.
 bool IsAmount(const model::ParameterInfo& parameter);
 
-// Finds a parameter of an effect by its entry in the catalogue.
-const model::ParameterInfo& ParameterOf(const std::string& effect, const std::string& parameter);
-
 }  // namespace hydro::diagnose

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/maths/spread.h"
-#include "diagnose/recording/sample_interval.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -45,7 +45,7 @@ RowsRead RowsToRead(const std::vector<const RunData*>& runs) {
   double samples = 0, interval = 0;
   for (const RunData* run : runs) {
     samples += static_cast<double>(run->samples());
-    interval = std::max(interval, MedianInterval(run->stimulus.time));
+    interval = std::max(interval, runs::MedianInterval(run->stimulus.time));
   }
   const double times = samples / kMostSamples;
   RowsRead read;

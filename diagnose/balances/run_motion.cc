@@ -6,8 +6,8 @@
 #include <random>
 
 #include "base/maths/spread.h"
-#include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/second_sensors.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -57,7 +57,7 @@ GridSignal OnGrid(const RunData& run, size_t which, double step, size_t count) {
     own.push_back(values[i]);
   }
   if (own.size() < 4) return grid;
-  grid.interval = std::max(step, MedianInterval({&own_time}));
+  grid.interval = std::max(step, runs::MedianInterval({&own_time}));
   grid.noise = measured.noise.value_or(EstimateNoise(own));
   const maths::Range range = maths::RangeOf(own);
   grid.noise = std::max(grid.noise, 1e-9 * range.size() + 1e-300);
@@ -310,7 +310,7 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given, const Rea
   motion.options.begin = run.stimulus.begin;
   motion.options.motion = run.stimulus.motion;
   const std::vector<double>& time = run.stimulus.time;
-  motion.interval = MedianInterval({&time});
+  motion.interval = runs::MedianInterval({&time});
   motion.step = static_cast<double>(as.every) * motion.interval;
   const auto count =
       static_cast<size_t>(std::floor((time.back() - time.front()) / motion.step * (1 + 1e-9))) + 1;

@@ -31,7 +31,7 @@ BalanceSeries CarrierOf(const ColumnMaker& maker, size_t v, size_t run) {
   const std::vector<model::EffectParameter> all = model::EffectParameters(model);
   for (size_t i = 0; i < all.size(); ++i) {
     if (all[i].effect + 1 != model.effects.size()) continue;
-    const model::Role role = ParameterOf(variant.at.id, all[i].name).role;
+    const model::Role role = ParameterOf(variant.at, all[i].name).role;
     if (role != model::Role::kTorqueWave && role != model::Role::kDisplacementWave) continue;
     const auto found = DerivativesOf(model, maker.Motion(run), {{model::Unknown::Kind::kEffect, i}});
     return found.empty() ? BalanceSeries{} : found.front();

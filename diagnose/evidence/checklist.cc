@@ -12,7 +12,6 @@
 #include "diagnose/evidence/run_mistakes.h"
 #include "diagnose/recording/contradictions.h"
 #include "diagnose/recording/run_data.h"
-#include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sparse_columns.h"
 #include "diagnose/recording/vacuum.h"
 #include "model/sides.h"
@@ -70,7 +69,7 @@ class RunChecklist {
     for (size_t i = 1; i < run_.samples(); ++i) longest = std::max(longest, run_.time[i] - run_.time[i - 1]);
     const double interval = seconds / static_cast<double>(run_.samples() - 1);
     const bool even = longest < 1.5 * interval;
-    const bool slow = interval > runs::kSlowestSamples, fast = interval < kFastestSamples;
+    const bool slow = interval > runs::kSlowestSamples, fast = interval < runs::kFastestSamples;
     Add(even && !slow && !fast ? State::kGood : State::kLook, "samples",
         std::to_string(run_.samples()) + " in " + ShortNumber(seconds) + " s, one each " +
             ShortNumber(1e3 * interval) + " ms" +

@@ -9,7 +9,6 @@
 #include "base/parallel.h"
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/recording/run_data.h"
-#include "diagnose/recording/sample_interval.h"
 #include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
@@ -29,7 +28,7 @@ bool CanBeAligned(const Run& run) {
   return !run.bypass && run.p1.measured() && run.p2.measured() && Changes(run.p1) && Changes(run.p2) &&
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 2 * kFewestSamples &&
          run.time.back() - run.time.front() >= kClockTile &&
-         MedianInterval(run.time) <= runs::kSlowestSamples;
+         runs::MedianInterval(run.time) <= runs::kSlowestSamples;
 }
 
 // The signals of a device, by name.
@@ -42,7 +41,7 @@ const std::vector<std::pair<const char*, Signal>>& SignalsOf(Late late) {
 }
 
 double LeastDelay(const Run& run) {
-  return std::max(kLeastDelay, kRecorderSamples * MedianInterval(run.time));
+  return std::max(kLeastDelay, kRecorderSamples * runs::MedianInterval(run.time));
 }
 
 // Whether command and motor are late enough to belong to another clock.
@@ -58,7 +57,7 @@ const std::vector<std::vector<Late>> kOthers = {
 
 // Shifts the run's signals.
 std::vector<ClockDelay> Moved(const LateSignals& found, const std::vector<Late>& late, Run* run) {
-  const double half_a_sample = 0.5 * MedianInterval(run->time);
+  const double half_a_sample = 0.5 * runs::MedianInterval(run->time);
   std::vector<ClockDelay> clocks;
   Delays delays{};
   for (size_t i = 0; i < late.size(); ++i) {

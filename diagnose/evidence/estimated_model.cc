@@ -119,7 +119,7 @@ void SetGivenEffects(const ScanRuns& runs, const SetFit& fit, EstimatedModel* es
   for (const auto& [place, amount] : amounts) {
     double& value = all[place].In(&estimated->model);
     const model::ParameterInfo& info =
-        ParameterOf(estimated->model.effects[all[place].effect].id, all[place].name);
+        ParameterOf(estimated->model.effects[all[place].effect], all[place].name);
     const bool phase = info.role == model::Role::kPhase;
     value = Bounded(info, phase ? value + amount : value * std::max(kLeastPart, 1 + amount));
   }
@@ -154,11 +154,11 @@ void MoveWhole(const ScanRuns& runs, const EffectVariant& variant, double amount
   if (!(here > 0) || !(there > 0) || !(amount > 0)) return;
   // A time acts in proportion. Where the series grows more slowly, the balances' filters pass only part of
   // it.
-  const bool is_time = ParameterOf(effect->id, shape).role == model::Role::kTime;
+  const bool is_time = ParameterOf(*effect, shape).role == model::Role::kTime;
   const double slope = is_time ? 1 : std::log(there / here) / std::log(1 + kMoveStep);
   if (std::abs(slope) < kMoveStep) return;
   const double move = std::clamp(std::pow(amount, 1 / slope), 1 / kGridRatio, kGridRatio);
-  effect->parameters[shape] = Bounded(ParameterOf(effect->id, shape), at * move);
+  effect->parameters[shape] = Bounded(ParameterOf(*effect, shape), at * move);
 }
 
 // Takes the amplitude from all runs and the phase from the first, where the shaft's angle counts.
@@ -209,13 +209,12 @@ void AddEffect(const ScanRuns& runs, const Rows& rows, const std::string& name, 
     cosine = phase;
   }
   for (const auto& [parameter, amount] : amounts)
-    effect.parameters[parameter] = Bounded(ParameterOf(effect.id, parameter), amount);
+    effect.parameters[parameter] = Bounded(ParameterOf(effect, parameter), amount);
   // What was moved is part of the whole, so it is relatively larger when there is less of the whole.
   for (const auto& [parameter, amount] : moved) {
     const double by = std::exp(
         std::clamp(amount / std::max(whole, 1 / kGridRatio), -std::log(kGridRatio), std::log(kGridRatio)));
-    effect.parameters[parameter] =
-        Bounded(ParameterOf(effect.id, parameter), effect.parameters[parameter] * by);
+    effect.parameters[parameter] = Bounded(ParameterOf(effect, parameter), effect.parameters[parameter] * by);
   }
   if (variant.kind == EffectVariant::Kind::kWhole) MoveWhole(runs, variant, whole, &effect);
   if (variant.kind == EffectVariant::Kind::kWave) SetWave(variant, name, wave, &effect);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
 #include "diagnose/balances/rows.h"

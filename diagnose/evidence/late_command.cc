@@ -17,7 +17,6 @@
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/evidence/set_evidence.h"
 #include "diagnose/recording/run_data.h"
-#include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
 #include "model/terms/parameter_info.h"
 #include "runs/measured/sample_times.h"
@@ -53,7 +52,7 @@ constexpr double kSameInterval = 0.01;
 
 bool CanTellRows(const Run& run) {
   return !run.sidecar.empty() && (run.motor_speed.measured() || run.motor_angle.measured()) &&
-         run.samples() >= 2 * kFewestSamples && MedianInterval(run.time) <= runs::kSlowestSamples;
+         run.samples() >= 2 * kFewestSamples && runs::MedianInterval(run.time) <= runs::kSlowestSamples;
 }
 
 // The weights of a contrast: how late the one signal is against the mean of the others.
@@ -82,7 +81,7 @@ Run BusiestStretch(Run run, size_t count) {
 
 // What one run shows; nothing where it shows nothing.
 std::optional<LateCommand> LateIn(const model::ModelDescription& given, const Run& recorded, int moved) {
-  const double step = MedianInterval(recorded.time);
+  const double step = runs::MedianInterval(recorded.time);
   Run run = recorded;
   if (!runs::RemoveDelays({{&Run::voltage, moved * step}}, &run)) return std::nullopt;
   const RunData data = PrepareRun(std::move(run), given);
@@ -146,7 +145,7 @@ std::string LineFor(const std::vector<Run>& runs, int moved) {
     if (std::ranges::find(sidecars, name) == sidecars.end()) sidecars.push_back(name);
   }
   runs::ColumnSource moved_source = runs.front().voltage.source;
-  moved_source.delay += moved * MedianInterval(runs.front().time);
+  moved_source.delay += moved * runs::MedianInterval(runs.front().time);
   return "in " + Enumerated(sidecars) +
          ", under [columns], mends it: " + LineOf(runs.front(), &Run::voltage, moved_source);
 }
@@ -157,7 +156,7 @@ std::string RemarkOn(const model::ModelDescription& given, const std::vector<Run
   LateCommand rest = FindLateCommand(given, runs, 0, jobs);
   if (!(std::abs(rest.rows) > kHalfARow + kSurelyLate * rest.error)) return "";
   // A command that is early may be an amplifier that is late, and then by any time.
-  const double step = MedianInterval(runs.front().time);
+  const double step = runs::MedianInterval(runs.front().time);
   const int earliest = -1,
             latest = std::clamp(static_cast<int>(kRounding * kLeastDelay / step), 1, kMostRows);
   for (int tried = 0; tried < kMostTries && std::abs(rest.rows) > kHalfARow; ++tried) {
@@ -210,8 +209,8 @@ CommandRemarks RemarksOnCommands(const model::ModelDescription& given, const std
     if (!CanTellRows(whole)) continue;
     const Run run = BusiestStretch(whole, each);
     const auto same = std::ranges::find_if(recorders, [&](const std::vector<Run>& one) {
-      const double interval = MedianInterval(one.front().time);
-      const bool as_fast = std::abs(MedianInterval(run.time) - interval) < kSameInterval * interval;
+      const double interval = runs::MedianInterval(one.front().time);
+      const bool as_fast = std::abs(runs::MedianInterval(run.time) - interval) < kSameInterval * interval;
       return as_fast && one.front().voltage.source.column == run.voltage.source.column &&
              one.front().voltage.source.delay == run.voltage.source.delay;
     });

@@ -10,8 +10,8 @@
 #include "diagnose/evidence/set_evidence.h"
 #include "diagnose/fit/intervals.h"
 #include "diagnose/recording/run_data.h"
-#include "diagnose/recording/sample_interval.h"
 #include "model/terms/parameter_info.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -97,7 +97,7 @@ class ClockSteps {
         run_(run),
         late_(std::move(late)),
         reach_(LargestDelay(run)),
-        step_(MedianInterval(run.time)) {}
+        step_(runs::MedianInterval(run.time)) {}
 
   LateSignals Find() {
     LateSignals best;
@@ -196,7 +196,7 @@ class ClockSteps {
 // Means of uneven samples may be few: enough of them have to remain to be a run.
 size_t ToAverage(const Run& run) {
   const double most = std::max(1.0, static_cast<double>(run.samples()) / kFewestSamples);
-  return static_cast<size_t>(std::clamp(kStep / MedianInterval(run.time) * (1 + 1e-9), 1.0, most));
+  return static_cast<size_t>(std::clamp(kStep / runs::MedianInterval(run.time) * (1 + 1e-9), 1.0, most));
 }
 
 }  // namespace

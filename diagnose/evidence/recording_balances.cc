@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "base/maths/spread.h"
 #include "diagnose/balances/masks.h"
 #include "diagnose/balances/run_motion.h"
 #include "diagnose/balances/test_functions.h"
-#include "diagnose/recording/sample_interval.h"
 #include "model/terms/parameter_info.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -1,9 +1,7 @@
 #include "diagnose/evidence/recording_check.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <utility>
 
 #include "base/parallel.h"
 #include "diagnose/evidence/run_mistakes.h"

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <optional>
 #include <string>
 
 #include "base/maths/spread.h"
 #include "diagnose/recording/run_data.h"
-#include "diagnose/recording/sample_interval.h"
 #include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
@@ -53,10 +51,10 @@ RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
     if (signal.measured() && !signal.noise.has_value()) signal.noise = EstimateNoise(signal.values);
   }
   moves_ = Moves(run_);
-  const double interval = MedianInterval(run_.time);
+  const double interval = runs::MedianInterval(run_.time);
   std::erase_if(possible_, [&](const RecordingMistake& mistake) {
     const double step = mistake.time_factor * interval;
-    return mistake.time_factor != 1 && (step > runs::kSlowestSamples || step < kFastestSamples);
+    return mistake.time_factor != 1 && (step > runs::kSlowestSamples || step < runs::kFastestSamples);
   });
   const Mistakes shafts = OtherShafts(run_, model_.parameters);
   possible_.insert(possible_.end(), shafts.begin(), shafts.end());
@@ -73,8 +71,8 @@ const RecordingBalances* RunMistakes::Read(const Mistakes& mistakes) const {
     std::get<model::Shaft>(reading) = one.shaft.value_or(std::get<model::Shaft>(reading));
     if (one.unsigned_signal.has_value()) std::get<std::string>(reading) += NameOf(*one.unsigned_signal);
   }
-  const double interval = std::get<double>(reading) * MedianInterval(run_.time);
-  if (interval > runs::kSlowestSamples || interval < kFastestSamples) return nullptr;
+  const double interval = std::get<double>(reading) * runs::MedianInterval(run_.time);
+  if (interval > runs::kSlowestSamples || interval < runs::kFastestSamples) return nullptr;
   const auto known = readings_.find(reading);
   if (known != readings_.end()) return &known->second;
   Run run = run_;

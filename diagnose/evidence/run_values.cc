@@ -43,7 +43,6 @@ std::optional<RunValues> ValuesOfRuns(const model::ModelDescription& model,
   const SetFit one = evidence.Fit({}), own = evidence.Fit({name});
   RunValues values;
   values.base = base;
-  values.log_evidence = own.log_evidence;
   values.gain = own.log_evidence - one.log_evidence + ChangeOdds({name}).LogOdds({name});
   const double given = model.parameters.*parameter.member;
   const auto bounded = [&](double value) {

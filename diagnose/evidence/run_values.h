@@ -13,10 +13,9 @@ namespace hydro::diagnose {
 
 // One base parameter with a value for each run. Everything else stays as the model has it.
 struct RunValues {
-  size_t base = 0;          // in BaseParameters()
-  double gain = 0;          // ln of the odds that the parameter differs by run, against one value for all
-  double log_evidence = 0;  // that it differs; comparable for one model and its runs
-  double common = 0;        // the one value for all
+  size_t base = 0;    // in BaseParameters()
+  double gain = 0;    // ln of the odds that the parameter differs by run, against one value for all
+  double common = 0;  // the one value for all
   std::vector<double> value, low, high;  // of each run, with 95 % intervals
 };
 

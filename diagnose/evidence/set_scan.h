@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <map>
-#include <string>
 #include <vector>
 
 #include "diagnose/evidence/change_set.h"

@@ -153,7 +153,6 @@ ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed, bool curv
     if (share > largest[changes]) {
       largest[changes] = share;
       one.set = finalists[k].set;
-      one.score = finalists[k].score;
     }
   }
   ExplanationWeights weights;

@@ -13,7 +13,6 @@ namespace hydro::diagnose {
 struct WeighedExplanation {
   ChangeSet changes;  // without their variants
   ChangeSet set;      // the variants with most of the weight
-  double score = 0;   // of `set`
   double weight = 0;
 };
 

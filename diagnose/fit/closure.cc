@@ -28,18 +28,11 @@ std::string UnitOf(const std::string& variable, const UnitSystem& units) {
   return ChannelUnit(variable == "motor_speed" ? model::Channel::kMotorSpeed : model::Channel::kP1, units);
 }
 
-std::string UnitOfValues(const std::string& effect, const UnitSystem& units) {
-  for (const model::ParameterInfo& parameter : model::FindEffect(effect)->parameters) {
-    if (parameter.name == "values") return parameter.UnitIn(units);
-  }
-  return "";
-}
-
 Closure Described(const model::EffectDescription& effect, const UnitSystem& units,
                   const std::vector<FreeParameter>& free, const std::vector<Interval>& intervals) {
   Closure closure;
   closure.id = effect.id;
-  closure.unit = UnitOfValues(effect.id, units);
+  closure.unit = ParameterOf(effect, "values").UnitIn(units);
   closure.against = effect.name_lists.at("against");
   for (const std::string& name : closure.against) closure.against_units.push_back(UnitOf(name, units));
   closure.knots.push_back(effect.lists.at("knots"));

@@ -104,7 +104,6 @@ class FitProblem {
     solver.max_num_iterations = options.most_iterations;
     solver.function_tolerance = options.tolerance;
     solver.parameter_tolerance = 0;  // the numbers have different units
-    solver.initial_trust_region_radius = options.first_radius;
     solver.gradient_tolerance = 0;
     if (!options.line_search) solver.max_num_line_search_step_size_iterations = 0;
     solver.num_threads = 1;

@@ -37,8 +37,7 @@ std::vector<model::StartState> StartsOf(const Fitted& fitted);
 
 struct FitOptions {
   int most_iterations = 20;
-  double tolerance = 1e-4;    // the fit stops when the sum falls by less than this, relative
-  double first_radius = 1e4;  // of the solver's trust region, in the parameters' own scales
+  double tolerance = 1e-4;  // the fit stops when the sum falls by less than this, relative
   int jobs = 1;
   // Whether each step is followed by a line search where some number has a bound. It takes as many
   // derivatives again. Without it, a step that meets a bound ends there.

@@ -9,14 +9,6 @@ namespace {
 // How far a fit may move from an effect's starting points: by this factor, up or down.
 constexpr double kReach = 300;
 
-const model::ParameterInfo& InfoOf(const model::EffectDescription& effect, const std::string& name) {
-  const model::EffectInfo* info = model::FindEffect(effect);
-  for (const model::ParameterInfo& parameter : info->parameters) {
-    if (parameter.name == name) return parameter;
-  }
-  throw model::ModelError("effect \"" + effect.id + "\" has no parameter \"" + name + "\"");
-}
-
 // A number of an effect that a fit moves, and its place among the model's EffectParameters().
 struct FreeEffectNumber {
   model::EffectParameter parameter;
@@ -35,7 +27,7 @@ std::vector<FreeEffectNumber> FreeEffectNumbers(const Hypothesis& hypothesis) {
     if (std::ranges::find(moved, effect.id) == moved.end()) continue;
     if (!all[i].IsStated(model)) continue;
     const double value = all[i].In(&model);
-    const bool periods = InfoOf(effect, all[i].name).role == model::Role::kPeriods;
+    const bool periods = ParameterOf(effect, all[i].name).role == model::Role::kPeriods;
     if (!periods || value != std::round(value)) free.push_back({all[i], i, value});
   }
   return free;
@@ -90,7 +82,7 @@ std::vector<FreeParameter> Hypothesis::Free() const {
   }
   for (const FreeEffectNumber& number : FreeEffectNumbers(*this)) {
     const model::EffectDescription& effect = model.effects[number.parameter.effect];
-    const model::ParameterInfo& info = InfoOf(effect, number.parameter.name);
+    const model::ParameterInfo& info = ParameterOf(effect, number.parameter.name);
     const double value = number.value;
     FreeParameter parameter{{model::Unknown::Kind::kEffect, number.place},
                             effect.id + "." + number.parameter.Label(),
@@ -128,13 +120,6 @@ void Hypothesis::Set(const std::vector<double>& values) {
 
 bool Hypothesis::Has(const Change& change) const {
   return std::ranges::find(changes, change) != changes.end();
-}
-
-Hypothesis Hypothesis::Held() const {
-  Hypothesis held = *this;
-  held.base.clear();
-  held.effects.clear();
-  return held;
 }
 
 double Sizes::Of(model::Scale scale) const {

@@ -86,8 +86,6 @@ struct Hypothesis {
   // Sets the model to these values, in the order of Free().
   void Set(const std::vector<double>& values);
   bool Has(const Change& change) const;
-  // The same hypothesis with nothing free.
-  Hypothesis Held() const;
 };
 
 // Whether fits move this number of an effect that the gap finder adds. What need not be stated stays at its

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "diagnose/fit/likeliest_scale.h"
 #include "diagnose/fit/residuals.h"
-#include "diagnose/recording/sample_interval.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -187,7 +187,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
                                 double temperature) {
   const std::vector<FreeParameter> free = WithinPhysics(fitted.hypothesis);
   const double discrepancy = temperature * DiscrepancyOf(fitted, runs, jobs);
-  const double sample = MedianInterval(runs.front()->stimulus.time);
+  const double sample = runs::MedianInterval(runs.front()->stimulus.time);
   Fitted all = WithHeld(fitted, runs, jobs);
   if (!all.ok()) all = fitted;
   const std::vector<FreeParameter> numbers = all.hypothesis.Free();

@@ -151,10 +151,8 @@ bool FollowsTorques(const model::ModelDescription& model, const FreeParameter& p
     return std::ranges::find(torques, member) != torques.end();
   }
   const model::EffectParameter number = model::EffectParameters(model)[place];
-  const std::vector<model::ParameterInfo>& infos =
-      model::FindEffect(model.effects[number.effect])->parameters;
-  const auto info = std::ranges::find(infos, number.name, &model::ParameterInfo::name);
-  return info->unit.find("lbf") != std::string::npos && PowerOf(*info) == 1;
+  const model::ParameterInfo& info = ParameterOf(model.effects[number.effect], number.name);
+  return info.unit.find("lbf") != std::string::npos && PowerOf(info) == 1;
 }
 
 void MoveToLikeliestScale(const model::ModelDescription& given, Hypothesis* hypothesis) {

@@ -1,6 +1,5 @@
 #include "diagnose/fit/prior.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -52,14 +51,13 @@ Beforehand KnownNumber(const model::ModelDescription& given, const Hypothesis& h
 double DeviationOf(const model::ModelDescription& given, const model::EffectParameter& number) {
   constexpr double kEstimated = 0.3, kPhase = 0.1;
   const model::EffectDescription& effect = given.effects[number.effect];
-  const std::vector<model::ParameterInfo>& infos = model::FindEffect(effect)->parameters;
-  const auto info = std::ranges::find(infos, number.name, &model::ParameterInfo::name);
-  if (info->role == model::Role::kPeriods) return 0;
-  if (info->role == model::Role::kPhase) return kPhase;
+  const model::ParameterInfo& info = ParameterOf(effect, number.name);
+  if (info.role == model::Role::kPeriods) return 0;
+  if (info.role == model::Role::kPhase) return kPhase;
   model::ModelDescription copy = given;
   const double value = number.In(&copy);
-  for (size_t base = 0; info->sides != nullptr && base < model::BaseParameters().size(); ++base) {
-    const bool of = model::BaseParameters()[base].member == info->sides;
+  for (size_t base = 0; info.sides != nullptr && base < model::BaseParameters().size(); ++base) {
+    const bool of = model::BaseParameters()[base].member == info.sides;
     // Half of the difference of two sides that are each known so well, relative to their mean.
     if (of) return model::UncertaintyOf(given, base) * (1 - value * value) / std::sqrt(2.0);
   }

@@ -18,19 +18,13 @@ constexpr double kTolerance = 1e-7;
 }  // namespace
 
 Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
-                      const model::StartState& start) {
-  return ResidualsOf(model, run, start, {}, {});
-}
-
-Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
                       const model::StartState& start, const std::vector<FreeParameter>& free,
-                      const std::vector<model::Unknown>& starts, bool repeated_effects) {
+                      const std::vector<model::Unknown>& starts) {
   std::vector<model::Unknown> unknowns;
   unknowns.reserve(free.size() + starts.size());
   for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
   unknowns.insert(unknowns.end(), starts.begin(), starts.end());
   model::ResponseOptions options;
-  options.repeated_effects = repeated_effects;
   options.channels = {};
   options.relative_tolerance = kTolerance;
   options.most_steps_per_sample = run.most_steps_per_sample;

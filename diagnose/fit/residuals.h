@@ -18,15 +18,12 @@ struct Residuals {
   std::vector<size_t> first;     // where each of the run's signals begins, then the end of the last
 };
 
-// Computes residuals without derivatives. Throws ModelError when the model cannot be simulated.
-Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
-                      const model::StartState& start);
-
 // Computes residuals and their derivatives with respect to the free parameters as a fit moves them (some as
-// logarithms), then with respect to `starts`. The values of `free` are those of the model. Throws as above.
+// logarithms), then with respect to `starts`. The values of `free` are those of the model. Throws ModelError
+// when the model cannot be simulated.
 Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
-                      const model::StartState& start, const std::vector<FreeParameter>& free,
-                      const std::vector<model::Unknown>& starts, bool repeated_effects = false);
+                      const model::StartState& start, const std::vector<FreeParameter>& free = {},
+                      const std::vector<model::Unknown>& starts = {});
 
 // The sum of the squared residuals; infinite where the model cannot be simulated.
 double SumOfSquares(const model::ModelDescription& model, const RunData& run, const model::StartState& start);

@@ -34,10 +34,8 @@ Fitted WithDerivatives(const ProofContext& context, const Hypothesis& best,
 Proof ProofOf(const ProofContext& context, const ProofWindows& windows, std::vector<RunData> told,
               std::vector<ProvedSet> sets, const ProofRoles& roles) {
   Proof proof;
+  static_cast<ProofRoles&>(proof) = roles;
   proof.sets = std::move(sets);
-  proof.given = roles.given;
-  proof.values = roles.values;
-  proof.best = roles.best;
   for (const RunData* window : windows.near.windows) proof.runs.push_back(window->name);
   const auto owned = std::make_shared<const std::vector<RunData>>(std::move(told));
   std::vector<WindowGap> gaps = GapsOfEach(proof.Found().model, PointersTo(*owned), context.jobs);

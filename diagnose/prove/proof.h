@@ -12,10 +12,14 @@
 
 namespace hydro::diagnose {
 
-struct Proof {
-  std::vector<ProvedSet> sets;
-  // Places of the model as given, of the best model with other values alone, and of the best predictor.
+// The places of the sets that a verdict compares: the model as given, the best model with other values alone,
+// and the best predictor.
+struct ProofRoles {
   size_t given = 0, values = 0, best = 0;
+};
+
+struct Proof : ProofRoles {
+  std::vector<ProvedSet> sets;
   // s, length of a judging window (ProvedSet::near); 0: the held-out runs themselves judge.
   double seconds = 0;
   std::vector<std::string> runs;  // the run of each judging window
@@ -31,11 +35,6 @@ struct Proof {
   const Hypothesis& Found() const { return Best().hypothesis; }
   // Whether windows judge. They do wherever one can be simulated; otherwise whole runs judge.
   bool OnWindows() const { return seconds > 0; }
-};
-
-// The places of the sets that a verdict compares.
-struct ProofRoles {
-  size_t given = 0, values = 0, best = 0;
 };
 
 // `told` has windows to which the values were fitted. Windows over which the best set cannot be simulated are

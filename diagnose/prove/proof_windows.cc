@@ -1,7 +1,6 @@
 #include "diagnose/prove/proof_windows.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/maths/spread.h"

@@ -2,25 +2,16 @@
 // simulation.
 #pragma once
 
-#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "diagnose/fit/hypothesis.h"
-#include "model/terms/description.h"
+#include "diagnose/evidence/estimated_model.h"
 
 namespace hydro::diagnose {
 
-struct Proposal {
-  // Effects added or values freed, relative to the model as given. Empty: only other values of `base`, or no
-  // change.
-  std::vector<Change> changes;
-  // The given model with those effects, and with all base values as estimated from all fitted runs.
-  model::ModelDescription model;
-  // Base parameters (BaseParameters()) whose values the estimate has moved. A refinement may move these too.
-  std::vector<size_t> base;
-  std::map<size_t, double> deviation;  // how surely each of these is known (EstimatedModel)
+// Without changes: only other values of `base`, or nothing at all. A refinement may move these values too.
+struct Proposal : EstimatedModel {
   // When runs are held out in turn: the same model estimated without each of the context's runs, in their
   // order. Empty: `model` predicts all runs, although it has seen them.
   std::vector<model::ModelDescription> without;

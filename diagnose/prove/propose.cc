@@ -344,10 +344,7 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
     if (estimated) AtLikeliestScale(context.given, &*estimated);
     if (!estimated || IsImpossible(own_rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
     if (set.empty()) proposed.shown = Shown(rows, *estimated, allowed);
-    Proposal proposal{estimated->changes,
-                      estimated->model,
-                      estimated->base,
-                      estimated->deviation,
+    Proposal proposal{*estimated,
                       {},
                       fit.log_evidence - own.Log({}) + scores.odds().LogOdds(set),
                       WeightOf(HasCurve(set) ? proposed.weights : named, set)};

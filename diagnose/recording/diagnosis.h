@@ -185,8 +185,6 @@ struct RunCurves {
     std::vector<double> measured, before, after;
   };
   std::vector<Curve> curves;
-  // Residuals are plotted against these; may be empty.
-  std::vector<double> voltage;
 };
 
 // What the other runs choose among the sets that were tried, where each run is held out in turn.

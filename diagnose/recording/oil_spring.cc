@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/recording/sample_interval.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -72,7 +72,7 @@ class Recorded {
     const double duration = time_.back() - time_.front();
     const double on_oil = std::sqrt(p_.J * p_.V_ms / (2 * p_.beta)) / p_.D;
     const double window = std::min(kFastOil * on_oil, duration / 8);
-    const auto half = static_cast<Index>(window / MedianInterval(time_));
+    const auto half = static_cast<Index>(window / runs::MedianInterval(time_));
     if (half < 5 || angle_.size() < 8 * half || Rms(torque_) == 0) return std::nullopt;
     OilSpring found;
     VectorXd squeezed = angle_;  // the motion that the oil has to take up, as a motor angle

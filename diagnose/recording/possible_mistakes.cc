@@ -5,7 +5,6 @@
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
-#include "diagnose/recording/sample_interval.h"
 #include "runs/measured/measured_run.h"
 #include "runs/measured/sample_times.h"
 #include "runs/measured/signal_columns.h"
@@ -34,12 +33,7 @@ constexpr double kSameScale = 1e-4;  // relative: scales are written with few di
 bool IsNear(double a, double b) { return std::abs(a - b) <= kSameScale * std::abs(b); }
 
 // The signal's name in the run's sidecar.
-std::string NameIn(const Run& run, SignalOfRun signal) {
-  for (const runs::SignalName& one : runs::kSignals) {
-    if (one.signal == signal) return runs::KeyIn(run, one);
-  }
-  return "";
-}
+std::string NameIn(const Run& run, SignalOfRun signal) { return runs::KeyIn(run, runs::RowOf(signal)); }
 
 std::string NamesOf(const Run& run, const std::vector<SignalOfRun>& signals) {
   std::vector<std::string> names;
@@ -58,12 +52,7 @@ std::vector<SignalOfRun> Measured(const Run& run, const std::vector<SignalOfRun>
 }
 
 // The signal's unit in the model.
-std::string UnitOf(const Run& run, SignalOfRun signal) {
-  for (const runs::SignalName& one : runs::kSignals) {
-    if (one.signal == signal) return runs::UnitIn(run, one);
-  }
-  return "";
-}
+std::string UnitOf(const Run& run, SignalOfRun signal) { return runs::UnitIn(run, runs::RowOf(signal)); }
 
 // The stated unit of a column: the model's where nothing is stated; "" where its scale belongs to no unit.
 template <size_t n>

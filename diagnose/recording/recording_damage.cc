@@ -9,7 +9,7 @@
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/run_data.h"
-#include "diagnose/recording/sample_interval.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -237,7 +237,7 @@ void SetAside(const model::ModelDescription& model, Run* run, std::vector<size_t
 
 // Stretches where rows are lost (in time, or held in all sensors) and the command is different after them.
 std::vector<Stretch> LostSteps(const Run& run, const std::vector<size_t>& held_there, size_t sensors) {
-  const double usual = MedianInterval(run.time);
+  const double usual = runs::MedianInterval(run.time);
   const std::vector<double>& voltage = run.voltage.values;
   const double least = kStepOfCommand * maths::RangeOf(voltage).size();
   std::vector<Stretch> lost;

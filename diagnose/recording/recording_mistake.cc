@@ -35,12 +35,7 @@ double MeanOf(const std::vector<double>& values) {
 
 }  // namespace
 
-const char* NameOf(SignalOfRun signal) {
-  for (const runs::SignalName& one : runs::kSignals) {
-    if (one.signal == signal) return one.ours;
-  }
-  return "";
-}
+const char* NameOf(SignalOfRun signal) { return runs::RowOf(signal).ours; }
 
 bool RecordingMistake::IsSign() const { return !factors.empty() && factors[0].second == -1; }
 

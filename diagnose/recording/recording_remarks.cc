@@ -9,7 +9,6 @@
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/noise_remarks.h"
-#include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sparse_columns.h"
 #include "runs/measured/sample_times.h"
 
@@ -24,7 +23,7 @@ std::string InPercent(double share) { return ShortNumber(100 * share, 3) + " %";
 
 void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
   const std::vector<double>& time = run.stimulus.time;
-  const double usual = MedianInterval(time);
+  const double usual = runs::MedianInterval(time);
   size_t gaps = 0, first = 0;
   double longest = 0;
   for (size_t i = 0; i + 1 < time.size(); ++i) {
@@ -104,7 +103,7 @@ void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const
   std::vector<std::string> slow;
   double longest = 0;
   for (const RunData* run : runs) {
-    const double interval = MedianInterval(run->stimulus.time);
+    const double interval = runs::MedianInterval(run->stimulus.time);
     if (run->stimulus.bypass || kFewestInMotion * interval <= fastest) continue;
     slow.push_back(run->name);
     longest = std::max(longest, interval);

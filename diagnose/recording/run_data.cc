@@ -7,7 +7,6 @@
 #include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
 #include "model/sides.h"
 #include "runs/measured/sample_times.h"
@@ -17,18 +16,9 @@ namespace {
 
 constexpr size_t kFewestOfASignal = 20;  // of one signal, because slower sensors leave gaps
 
-// The row of the table of signals (runs/measured/measured_run.h).
-constexpr const runs::SignalName* SignalRow(runs::MeasuredSignal runs::MeasuredRun::*signal) {
-  for (const runs::SignalName& one : runs::kSignals) {
-    if (one.signal == signal) return &one;
-  }
-  return nullptr;
-}
-
-constexpr const runs::SignalName* kSignalRows[model::kChannels] = {
-    SignalRow(&runs::MeasuredRun::motor_angle), SignalRow(&runs::MeasuredRun::motor_speed),
-    SignalRow(&runs::MeasuredRun::arm_angle),   SignalRow(&runs::MeasuredRun::arm_speed),
-    SignalRow(&runs::MeasuredRun::p1),          SignalRow(&runs::MeasuredRun::p2)};
+constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[model::kChannels] = {
+    &runs::MeasuredRun::motor_angle, &runs::MeasuredRun::motor_speed, &runs::MeasuredRun::arm_angle,
+    &runs::MeasuredRun::arm_speed,   &runs::MeasuredRun::p1,          &runs::MeasuredRun::p2};
 
 [[noreturn]] void Refuse(const std::string& place, const std::string& signal, const std::string& found,
                          const std::string& allowed) {
@@ -204,7 +194,7 @@ double LargestPossible(const runs::SignalName& row, const model::ModelDescriptio
 }
 
 const runs::SignalName& SignalOf(model::Channel channel) {
-  return *kSignalRows[static_cast<size_t>(channel)];
+  return runs::RowOf(kSignalOf[static_cast<size_t>(channel)]);
 }
 
 bool IsCompared(const runs::MeasuredRun& run, model::Channel channel) {
@@ -214,12 +204,6 @@ bool IsCompared(const runs::MeasuredRun& run, model::Channel channel) {
 
 size_t CountValid(const std::vector<double>& values) {
   return static_cast<size_t>(std::ranges::count_if(values, [](double value) { return !std::isnan(value); }));
-}
-
-size_t CountValid(const RunData& run) {
-  size_t count = 0;
-  for (const SignalData& signal : run.signals) count += signal.valid;
-  return count;
 }
 
 bool HaveOil(const std::vector<const RunData*>& runs) {
@@ -248,7 +232,7 @@ double SampleInterval(const std::vector<const RunData*>& runs) {
   std::vector<const std::vector<double>*> times;
   times.reserve(runs.size());
   for (const RunData* run : runs) times.push_back(&run->stimulus.time);
-  return MedianInterval(times);
+  return runs::MedianInterval(times);
 }
 
 model::Stimulus StimulusOf(const runs::MeasuredRun& run) {
@@ -277,12 +261,7 @@ std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>&
   return starts;
 }
 
-const std::string& ChannelName(model::Channel channel) {
-  static const std::array<std::string, model::kChannels> names = {kSignalRows[0]->ours, kSignalRows[1]->ours,
-                                                                  kSignalRows[2]->ours, kSignalRows[3]->ours,
-                                                                  kSignalRows[4]->ours, kSignalRows[5]->ours};
-  return names.at(static_cast<size_t>(channel));
-}
+std::string ChannelName(model::Channel channel) { return SignalOf(channel).ours; }
 
 std::string ChannelUnit(model::Channel channel, const UnitSystem& units) {
   return units.UnitFor(SignalOf(channel).unit, SignalOf(channel).arm);
@@ -316,7 +295,7 @@ void CheckCells(const runs::MeasuredRun& run) {
 // the recording has, or as many as a minute has at 2 kHz: more would make that grid too large.
 void CheckGaps(const runs::MeasuredRun& run) {
   constexpr double kTimesTheRows = 10, kAnyway = 120000;
-  const double interval = MedianInterval(run.time), rows = static_cast<double>(run.samples());
+  const double interval = runs::MedianInterval(run.time), rows = static_cast<double>(run.samples());
   const double most = interval * (kTimesTheRows * rows + kAnyway);
   for (size_t i = 1; i < run.samples(); ++i) {
     const double gap = run.time[i] - run.time[i - 1];
@@ -338,8 +317,8 @@ void CheckGaps(const runs::MeasuredRun& run) {
 // Refuses samples so close that their times must be in another unit, and names it where one is likely.
 void RequirePossibleSamples(const runs::MeasuredRun& run) {
   constexpr double kFastestUsual = 2e-5, kSlowestUsual = 0.1;  // s
-  const double interval = MedianInterval(run.time);
-  if (interval >= kFastestSamples) return;
+  const double interval = runs::MedianInterval(run.time);
+  if (interval >= runs::kFastestSamples) return;
   std::string hint = ": is the column in another unit?";
   for (const auto& [unit, size] : {std::pair("s", 1.0), std::pair("ms", 1e-3), std::pair("us", 1e-6)}) {
     const double meant = interval / run.time_source.scale * size;
@@ -348,7 +327,8 @@ void RequirePossibleSamples(const runs::MeasuredRun& run) {
     break;
   }
   Refuse(run.file, "time", "rows " + ShortNumber(interval) + " s apart",
-         "at least " + ShortNumber(kFastestSamples) + " s: no recorder of such a machine is faster" + hint);
+         "at least " + ShortNumber(runs::kFastestSamples) + " s: no recorder of such a machine is faster" +
+             hint);
 }
 
 }  // namespace

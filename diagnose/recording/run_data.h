@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,13 +72,11 @@ bool IsCompared(const runs::MeasuredRun& run, model::Channel channel);
 double LargestPossible(const runs::SignalName& row, const model::ModelDescription& model);
 // The number of values that are not missing.
 size_t CountValid(const std::vector<double>& values);
-// The same over all signals that are compared.
-size_t CountValid(const RunData& run);
-// For several runs, s: the duration of the shortest, and the median time between successive samples of all.
 // Whether the oil takes part in any of the runs: a pressure was recorded, or a bypass was not open.
 bool HaveOil(const std::vector<const RunData*>& runs);
 // Whether anything is ever commanded in one of the runs.
 bool AreDriven(const std::vector<const RunData*>& runs);
+// s: the duration of the shortest run, and the median time between successive samples of all.
 double ShortestDuration(const std::vector<const RunData*>& runs);
 double SampleInterval(const std::vector<const RunData*>& runs);
 // The inputs of the actuator, without the motion of a driven shaft.
@@ -90,7 +87,7 @@ std::vector<const RunData*> PointersTo(const std::vector<RunData>& runs);
 std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs);
 
 // "motor_speed", as in sidecars and reports.
-const std::string& ChannelName(model::Channel channel);
+std::string ChannelName(model::Channel channel);
 // "rad/s", in the model's units.
 std::string ChannelUnit(model::Channel channel, const UnitSystem& units);
 

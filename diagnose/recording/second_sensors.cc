@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
 #include "diagnose/recording/block_means.h"
 #include "diagnose/recording/run_data.h"
-#include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
 #include "runs/measured/measured_run.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -74,7 +73,7 @@ const std::vector<SensorPair>& SensorPairs() {
 }
 
 void AddSensorBlocks(const SensorPair& pair, const Run& run, SensorBlocks* blocks) {
-  blocks->step = std::max(blocks->step, MedianInterval(run.time));
+  blocks->step = std::max(blocks->step, runs::MedianInterval(run.time));
   double noise = 0;
   for (const SignalOfRun one : pair.first) noise = std::hypot(noise, EstimateNoise((run.*one).values));
   blocks->first_noise = std::max(blocks->first_noise, noise);
@@ -119,13 +118,8 @@ std::optional<SecondSensor> Compared(const SensorPair& pair, const SensorBlocks&
                       .late_half = late_half};
 }
 
-const runs::SignalName& NameOfSignal(SignalOfRun signal) {
-  return *std::find_if(runs::kSignals.begin(), runs::kSignals.end(),
-                       [&](const runs::SignalName& one) { return one.signal == signal; });
-}
-
 std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& second, SensorsDiffer differ) {
-  const runs::SignalName& name = NameOfSignal(pair.second);
+  const runs::SignalName& name = runs::RowOf(pair.second);
   std::string text = name.ours;
   if (differ == SensorsDiffer::kInTime)
     return text + " is " + WithHalfWidth(std::abs(second.late), second.late_half) + " s " +
@@ -158,7 +152,7 @@ std::string DoesNotFollow(const SensorPair& pair, const Run& run, const SensorBl
   const double least = second ? -kSameQuantity : -2;
   if (!correlation.has_value() || *correlation >= kSameQuantity || *correlation <= least) return "";
   const std::string& column = (run.*pair.second).source.column;
-  return std::string(NameOfSignal(pair.second).ours) + " does not follow " + pair.what + " (correlation " +
+  return std::string(runs::RowOf(pair.second).ours) + " does not follow " + pair.what + " (correlation " +
          ShortNumber(*correlation, 2) + "): " + pair.believed + "; is " +
          (column.empty() ? "it" : "the column " + Quoted(column)) +
          (*correlation <= -kSameQuantity ? " of the other sign? Then turn that of its scale"

@@ -22,10 +22,8 @@ Units NamedUnits(const std::vector<RecordingMistake>& mistakes) {
   Units units;
   for (const RecordingMistake& mistake : mistakes) {
     if (mistake.time_factor != 1) units["time"] = mistake.unit;
-    for (const runs::SignalName& one : runs::kSignals) {
-      for (const auto& [signal, factor] : mistake.factors) {
-        if (signal == one.signal && !mistake.unit.empty()) units[one.ours] = mistake.unit;
-      }
+    for (const auto& [signal, factor] : mistake.factors) {
+      if (!mistake.unit.empty()) units[NameOf(signal)] = mistake.unit;
     }
     if (mistake.pressures_exchanged) std::swap(units["p1"], units["p2"]);
   }
@@ -100,10 +98,8 @@ std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const Ru
 }
 
 std::string LineOf(const Run& run, SignalOfRun signal, const runs::ColumnSource& source) {
-  for (const runs::SignalName& one : runs::kSignals) {
-    if (one.signal == signal) return Line(runs::KeyIn(run, one), source, "", runs::UnitIn(run, one));
-  }
-  return "";
+  const runs::SignalName& row = runs::RowOf(signal);
+  return Line(runs::KeyIn(run, row), source, "", runs::UnitIn(run, row));
 }
 
 }  // namespace hydro::diagnose

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <regex>
 #include <string>
-#include <utility>
 
 #include "base/number_text.h"
 #include "base/units.h"

@@ -1,7 +1,6 @@
 // All candidates, with the reason why each was accepted or rejected.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "diagnose/evidence/set_scan.h"

@@ -1,6 +1,5 @@
 #include "diagnose/say/conclusion.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>

@@ -33,11 +33,9 @@ std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::M
     const std::string& id = given.effects[parameter.effect].id;
     // Effects that were added come after those that the model has.
     if (parameter.effect >= found.effects.size() || found.effects[parameter.effect].id != id) continue;
-    const std::vector<model::ParameterInfo>& infos =
-        model::FindEffect(given.effects[parameter.effect])->parameters;
-    const auto info = std::ranges::find(infos, parameter.name, &model::ParameterInfo::name);
-    numbers.push_back({id + "." + parameter.Label(), info->UnitIn(given.units), parameter.In(&before),
-                       parameter.In(&found), false, &*info});
+    const model::ParameterInfo& info = ParameterOf(given.effects[parameter.effect], parameter.name);
+    numbers.push_back({id + "." + parameter.Label(), info.UnitIn(given.units), parameter.In(&before),
+                       parameter.In(&found), false, &info});
   }
   return numbers;
 }

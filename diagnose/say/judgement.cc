@@ -9,8 +9,8 @@
 #include "diagnose/fit/intervals.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/recording/run_data.h"
-#include "diagnose/recording/sample_interval.h"
 #include "diagnose/say/claims.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/parallel.h"
 
@@ -36,7 +35,6 @@ RunCurves Curves(const RunData& run, bool held_out, const model::Response& befor
     return thinned;
   };
   curves.time = thin(run.stimulus.time);
-  curves.voltage = thin(run.stimulus.voltage);
   for (const SignalData& signal : run.signals) {
     const auto c = static_cast<size_t>(signal.channel);
     curves.curves.push_back(

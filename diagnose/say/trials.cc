@@ -61,7 +61,7 @@ Rig Inspect(const std::vector<const RunData*>& runs) {
   Rig rig;
   for (const RunData* run : runs) {
     for (const double v : run->stimulus.voltage) rig.voltage = std::max(rig.voltage, std::abs(v));
-    (run->stimulus.shaft == model::Shaft::kFree ? rig.free : rig.clamped) = true;
+    rig.free = rig.free || run->stimulus.shaft == model::Shaft::kFree;
     const auto angle = [&](double value) {
       rig.low_angle = std::min(rig.low_angle, value);
       rig.high_angle = std::max(rig.high_angle, value);

@@ -17,7 +17,7 @@ namespace hydro::diagnose {
 struct Rig {
   double voltage = 0, pressure = 0, speed = 0;
   double low_angle = std::numeric_limits<double>::infinity(), high_angle = -low_angle;
-  bool free = false, clamped = false;
+  bool free = false;                             // the arm, in some run
   std::array<double, model::kChannels> noise{};  // 0: not measured
 };
 

@@ -148,6 +148,15 @@ const EffectInfo* FindEffect(const EffectDescription& effect) {
   return effect.formulas != nullptr ? &effect.formulas->info() : FindEffect(effect.id);
 }
 
+const ParameterInfo& ParameterOf(const EffectDescription& effect, const std::string& parameter) {
+  if (const EffectInfo* info = FindEffect(effect)) {
+    for (const ParameterInfo& one : info->parameters) {
+      if (one.name == parameter) return one;
+    }
+  }
+  throw ModelError("effect \"" + effect.id + "\" has no parameter \"" + parameter + "\"");
+}
+
 bool ComesBefore(const EffectDescription& a, const EffectDescription& b) {
   const auto place = [](const EffectDescription& effect) {
     const EffectInfo* info = FindEffect(effect);

@@ -202,6 +202,8 @@ const std::vector<EffectInfo>& EffectCatalogue();
 const EffectInfo* FindEffect(const std::string& id);
 // The same for an effect of a model, which may bring its own.
 const EffectInfo* FindEffect(const EffectDescription& effect);
+// The entry of one of its parameters. Throws ModelError when the effect or the parameter is unknown.
+const ParameterInfo& ParameterOf(const EffectDescription& effect, const std::string& parameter);
 
 // The order in which a model's effects are applied.
 bool ComesBefore(const EffectDescription& a, const EffectDescription& b);

@@ -47,20 +47,30 @@ bool RemoveDelays(const std::vector<SignalDelay>& delays, MeasuredRun* run) {
   return true;
 }
 
+double MedianInterval(const std::vector<const std::vector<double>*>& times) {
+  std::vector<double> intervals;
+  for (const std::vector<double>* time : times) {
+    for (size_t i = 1; i < time->size(); ++i) intervals.push_back((*time)[i] - (*time)[i - 1]);
+  }
+  if (intervals.empty()) return 1;
+  return maths::Median(std::move(intervals));
+}
+
+double MedianInterval(const std::vector<double>& time) { return MedianInterval(std::vector{&time}); }
+
 std::string TimeUnitHint(double interval) {
-  constexpr double kFastestSamples = 2e-5, kUsualSamples = 0.1;  // s
+  constexpr double kFastestUsual = 2e-5, kSlowestUsual = 0.1;  // s
   if (interval <= kSlowestSamples) return "";
   for (const auto& [unit, size] : {std::pair("ms", 1e-3), std::pair("us", 1e-6), std::pair("ns", 1e-9)}) {
-    if (interval * size < kFastestSamples || interval * size > kUsualSamples) continue;
+    if (interval * size < kFastestUsual || interval * size > kSlowestUsual) continue;
     return std::string(" (is the column in ") + unit + "? unit = \"" + unit + "\")";
   }
   return "";
 }
 
 void RequireFastSamples(const MeasuredRun& run) {
-  std::vector<double> intervals;
-  for (size_t i = 1; i < run.samples(); ++i) intervals.push_back(run.time[i] - run.time[i - 1]);
-  const double interval = intervals.empty() ? 0 : maths::Median(std::move(intervals));
+  if (run.samples() < 2) return;
+  const double interval = MedianInterval(run.time);
   if (interval <= kSlowestSamples) return;
   throw InputError(run.file + ": time: found rows " + ShortNumber(interval) + " s apart, allowed at most " +
                    ShortNumber(kSlowestSamples) + " s: slower ones show no motion of such a machine" +

@@ -18,6 +18,13 @@ using SignalDelay = std::pair<MeasuredSignal MeasuredRun::*, double>;
 // the run unchanged, when fewer than two samples would remain.
 bool RemoveDelays(const std::vector<SignalDelay>& delays, MeasuredRun* run);
 
+// The median time between successive samples, s; 1 when there are fewer than two.
+double MedianInterval(const std::vector<double>& time);
+// The same over several recordings together.
+double MedianInterval(const std::vector<const std::vector<double>*>& times);
+
+// s between samples. No recorder of such a machine is faster.
+inline constexpr double kFastestSamples = 5e-6;
 // s between samples. Slower recorders do not show the motion of such a machine.
 inline constexpr double kSlowestSamples = 0.25;
 

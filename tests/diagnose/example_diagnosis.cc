@@ -26,7 +26,6 @@ diagnose::RunCurves Curves(const std::string& run, bool held_out, size_t samples
     const double speed = 120 * std::sin(2 * t) + 20 * std::sin(9 * t);
     const double off = std::exp(-std::abs(speed) / 30) * (speed > 0 ? 1 : -1);
     curves.time.push_back(t);
-    curves.voltage.push_back(std::sin(2 * t) > 0 ? 4 : -4);
     const double values[3] = {speed, 500 - 350 * std::sin(2 * t + 0.4), 500 + 350 * std::sin(2 * t + 0.4)};
     const double noise[3] = {0.3, 1.5, 1.5};
     const double sizes[3] = {9, -60, 60};

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <limits>
 #include <regex>
 
@@ -232,8 +231,7 @@ TEST(ReportHtml, OddCurves) {
   diagnosis.curves[0].curves[0].before.assign(60, 1e30);
   diagnosis.curves[0].curves[1].before.clear();
   diagnosis.curves[0].curves[2].measured.assign(60, std::numeric_limits<double>::quiet_NaN());
-  diagnosis.curves[1].voltage.clear();
-  diagnosis.curves.push_back({"nothing", false, {}, {}, {}});
+  diagnosis.curves.push_back({"nothing", false, {}, {}});
   const std::string page = ReportHtml(diagnosis, false);
   EXPECT_EQ(UnbalancedTag(page), "");
   EXPECT_FALSE(Has(page, "nan"));

@@ -8,7 +8,6 @@
 #include <numbers>
 #include <random>
 
-#include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
 #include "model/terms/state.h"
 #include "runs/measured/sample_times.h"

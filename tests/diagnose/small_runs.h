@@ -1,7 +1,6 @@
 // Short runs of a noisy rig, one for each way of holding the shaft, for tests of fits and statistics.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>

@@ -1,7 +1,6 @@
 // What the verdict rests on: intervals, significance, and what runs can tell.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>

@@ -1,12 +1,11 @@
 // Tests of how numbers and lists are written, and of the interval between samples.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <vector>
 
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "diagnose/recording/sample_interval.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -52,9 +51,9 @@ TEST(WordList, NamesRuns) {
 TEST(MedianInterval, OfOneAndOfSeveralRecordings) {
   const std::vector<double> slow = {0, 1, 2, 50};
   const std::vector<double> fast = {0, 0.25, 0.5, 0.75, 1, 1.25};
-  EXPECT_EQ(MedianInterval(slow), 1);
-  EXPECT_EQ(MedianInterval(std::vector{&slow, &fast}), 0.25);
-  EXPECT_EQ(MedianInterval(std::vector<double>{3}), 1);
+  EXPECT_EQ(runs::MedianInterval(slow), 1);
+  EXPECT_EQ(runs::MedianInterval(std::vector{&slow, &fast}), 0.25);
+  EXPECT_EQ(runs::MedianInterval(std::vector<double>{3}), 1);
 }
 
 }  // namespace

@@ -50,5 +50,12 @@ TEST(EffectCatalogue, IsComplete) {
   EXPECT_EQ(model::FindEffect("pump.unknown"), nullptr);
 }
 
+// Tests that a parameter's entry is found by its effect and its name, and that no other name has one.
+TEST(EffectCatalogue, EntryOfAParameter) {
+  EXPECT_EQ(model::ParameterOf({"pump.stribeck", {}, {}}, "speed").unit, "rad/s");
+  EXPECT_THROW(model::ParameterOf({"pump.stribeck", {}, {}}, "mass"), model::ModelError);
+  EXPECT_THROW(model::ParameterOf({"pump.unknown", {}, {}}, "speed"), model::ModelError);
+}
+
 }  // namespace
 }  // namespace hydro::testing

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -171,13 +170,6 @@ TEST(EffectVariants, OptionalNumbersStayAtTheirStandards) {
   EXPECT_THAT(gear[0].amounts, ElementsAre("load_share"));
   EXPECT_FALSE(gear[0].at.parameters.contains("motor_share"));
   EXPECT_TRUE(Of("accumulator.gas")[0].at.parameters.contains("precharge"));
-}
-
-// Tests that a parameter's entry is found by its names.
-TEST(EffectVariants, EntryOfAParameter) {
-  EXPECT_EQ(diagnose::ParameterOf("pump.stribeck", "speed").unit, "rad/s");
-  EXPECT_EQ(diagnose::ParameterOf("pump.stribeck", "mass").name, "");
-  EXPECT_EQ(diagnose::ParameterOf("pump.unheard_of", "speed").name, "");
 }
 
 }  // namespace

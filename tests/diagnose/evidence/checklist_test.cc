@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/number_text.h"
 #include "tests/diagnose/recording/line_in_checklist.h"

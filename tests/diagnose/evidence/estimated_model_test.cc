@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "model/formula/effect_formulas.h"
 #include "tests/diagnose/evidence/scanned.h"
 
 namespace hydro::testing {
@@ -92,6 +94,29 @@ TEST(EstimatedModel, Amount) {
   const EstimatedModel estimated = ModelOf(scanned, {"pump.quadratic_drag"});
   EXPECT_NEAR(ValueOf(estimated, "pump.quadratic_drag", "k"), kDrag, 0.1 * kDrag);
   EXPECT_THAT(estimated.changes, ::testing::ElementsAre(diagnose::Change{"pump.quadratic_drag", {}, ""}));
+}
+
+// Tests that the number of an effect that only the model file knows keeps to that effect's own bounds, not to
+// those of a number that no catalogue has.
+TEST(EstimatedModel, NumberOfAnEffectOfTheModelsOwn) {
+  const model::ParameterInfo number{
+      .name = "k", .unit = "in-lbf-s^2", .min = -1, .meaning = "gust", .example = 1e-4};
+  const model::EffectInfo info{.id = "own.gust",
+                               .summary = "wind that grows",
+                               .equation = "T_load -= k w |w|",
+                               .confused_with = "pump.quadratic_drag",
+                               .parameters = {number}};
+  model::EffectText text;
+  text.equation = {"load -= k * motor_speed * abs(motor_speed)"};
+  const auto formulas = std::make_shared<const model::EffectFormulas>(info, text);
+  const auto with = [&](double k) {
+    model::ModelDescription model = Table1With({{"own.gust", {{"k", k}}, {}}});
+    model.effects.front().formulas = formulas;
+    return model;
+  };
+  constexpr double kTrue = -2e-4, kGiven = -2.6e-4;
+  const Scanned scanned(ClampedPair(with(kTrue), kSeconds, 12), {}, with(kGiven));
+  EXPECT_NEAR(ValueOf(ModelOf(scanned, {}), "own.gust", "k"), kTrue, 0.3 * (kTrue - kGiven));
 }
 
 // Tests that an amount below 0 is estimated, too, where its least value is below 0 and not allowed.

@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/diagnose/recording/swing.h"
 #include "tests/table1.h"

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <utility>
 
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/chooser.h"

@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "diagnose/evidence/checklist.h"
 #include "tests/diagnose/recording/line_in_checklist.h"
 

@@ -3,8 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "diagnose/report/diagnosis_in_si.h"
 #include "tests/diagnose/example_diagnosis.h"
 

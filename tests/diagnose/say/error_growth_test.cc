@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <vector>
 
 #include "tests/diagnose/small_runs.h"
 

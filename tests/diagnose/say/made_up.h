@@ -1,7 +1,6 @@
 // Proofs with made-up gaps, for tests of what is concluded from them.
 #pragma once
 
-#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>

@@ -27,7 +27,6 @@ TEST(Inspect, TakesTheLargestOfAllRuns) {
   EXPECT_EQ(rig.voltage, voltage);
   EXPECT_EQ(rig.speed, speed);
   EXPECT_TRUE(rig.free);
-  EXPECT_TRUE(rig.clamped);
   EXPECT_LE(rig.low_angle, 0.1);   // the second run's clamp; the free arm begins at -0.1
   EXPECT_GE(rig.high_angle, 0.3);  // the first run's clamp
   const size_t p1 = static_cast<size_t>(model::Channel::kP1);
@@ -39,7 +38,6 @@ diagnose::Rig SmallRig() {
   rig.voltage = 6;
   rig.pressure = 512.5;
   rig.low_angle = rig.high_angle = 0.1;
-  rig.clamped = true;
   return rig;
 }
 
