@@ -4,7 +4,6 @@
 #include <sys/mman.h>
 
 #include <cstddef>
-#include <new>
 #include <stdexcept>
 #include <type_traits>
 

@@ -12,7 +12,6 @@
 #include <fstream>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bus/udpm/udpm_url.h"

@@ -12,7 +12,6 @@
 #include <hydro/rearm_t.hpp>
 #include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/input_error.h"
 #include "model/sides.h"
-#include "process/fault_codes.h"
 #include "tune/design/configured_laws.h"
 
 namespace hydro::position_ctrl {

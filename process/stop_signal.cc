@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <initializer_list>
 #include <mutex>
 
 namespace hydro::process {

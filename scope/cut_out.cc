@@ -1,7 +1,6 @@
 #include "scope/cut_out.h"
 
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "base/input_error.h"

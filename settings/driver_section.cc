@@ -1,7 +1,5 @@
 #include "settings/driver_section.h"
 
-#include <cmath>
-
 #include "base/number_text.h"
 #include "settings/process_sections.h"
 #include "settings/stack_config.h"

@@ -1,7 +1,6 @@
 #include "settings/limb_config.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/number_text.h"
 #include "base/text_file.h"

@@ -1,8 +1,6 @@
 // A small complete configuration in memory, for tests of the applications.
 #pragma once
 
-#include <string>
-
 #include "settings/stack_config.h"
 #include "tests/table1.h"
 

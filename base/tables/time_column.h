@@ -2,7 +2,6 @@
 // of day.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -1,7 +1,6 @@
 // The pictures of a study.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 

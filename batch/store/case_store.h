@@ -11,7 +11,6 @@
 
 #include <bitset>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

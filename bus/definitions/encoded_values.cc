@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cstring>
-#include <optional>
 
 #include "base/bytes.h"
 #include "bus/seal_trailer.h"

@@ -1,6 +1,5 @@
 // moves_an_arm MODEL LOG: the simulated actuator under both laws moves its arm to 0.3 rad in two seconds.
 // Every state goes over a bus into a log; prints what the log holds.
-#include <chrono>
 #include <cstdio>
 
 #include "bus/in_process_bus.h"

@@ -2,7 +2,6 @@
 // from Table 1.
 #include <spdlog/fmt/fmt.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "experiments/figures/catalogue.h"

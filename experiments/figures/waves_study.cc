@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include "base/units.h"
 #include "experiments/runs/pressure_sweep.h"

@@ -1,7 +1,6 @@
 #include "launch/doctor/doctor.h"
 
 #include <spdlog/fmt/fmt.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>

@@ -2,7 +2,6 @@
 // This class only decides; the objects that start, hear and print are passed in.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

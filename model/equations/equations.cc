@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <sstream>
-#include <utility>
 
 #include "model/effects/catalogue.h"
 #include "model/equations/evaluate.h"

@@ -1,7 +1,6 @@
 // The compiled formulas of an effect, which model/effects/formulas.cc runs.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "model/integrate/mode_machine.h"
 #include "model/integrate/runge_kutta.h"

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <sstream>
 #include <string>
-#include <utility>
 
 #include "plant/driver/check_sensors.h"
 #include "plant/driver/device.h"

@@ -16,7 +16,6 @@
 #include <exception>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "plant/rig.h"

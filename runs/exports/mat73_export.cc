@@ -2,7 +2,6 @@
 // time of writing into every dataset, so that the same run would not give the same bytes, and which crashes
 // at the end of the program when the disk is full.
 #include <cstring>
-#include <type_traits>
 
 #include "runs/exports/hdf5_handle.h"
 #include "runs/exports/mat_layout.h"

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 
 #include "base/input_error.h"
 #include "base/tables/mat_handles.h"

@@ -1,7 +1,6 @@
 #include "runs/log/doubtful_events.h"
 
 #include <algorithm>
-#include <bit>
 #include <map>
 #include <optional>
 #include <set>

@@ -1,9 +1,7 @@
 #include "runs/measured/table_times.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include <bit>
 #include <compare>
 #include <cstdint>
-#include <string>
 #include <tuple>
 #include <vector>
 

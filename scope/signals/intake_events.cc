@@ -1,6 +1,5 @@
 // What an Intake makes of messages that are not sent at every tick.
 #include <algorithm>
-#include <cmath>
 #include <hydro/messages.hpp>
 #include <sstream>
 #include <utility>

@@ -9,7 +9,6 @@
 #include <hydro/rearm_t.hpp>
 #include <hydro/stop_t.hpp>
 #include <hydro/tuning_request_t.hpp>
-#include <memory>
 
 #include "bus/output_left.h"
 #include "process/stop_signal.h"

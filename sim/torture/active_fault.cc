@@ -1,7 +1,6 @@
 #include "sim/torture/active_fault.h"
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <limits>
 

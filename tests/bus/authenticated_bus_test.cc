@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <hydro/motor_command_t.hpp>
 #include <memory>
 #include <string>

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <hydro/motor_command_t.hpp>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>

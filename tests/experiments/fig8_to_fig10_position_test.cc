@@ -8,7 +8,6 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/position_loop.h"
-#include "runs/step_response.h"
 
 namespace hydro::experiments {
 namespace {

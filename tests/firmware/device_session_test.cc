@@ -1,8 +1,6 @@
 // Who is in command of a device, and what it makes of frames that are old, repeated, foreign or forged.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "tests/firmware/device_bench.h"
 
 namespace hydro::firmware {

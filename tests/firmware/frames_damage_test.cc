@@ -2,9 +2,6 @@
 // is found.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <set>
-
 #include "tests/firmware/frame_maker.h"
 
 namespace hydro::firmware {

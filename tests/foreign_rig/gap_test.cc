@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/foreign_rig/catalogue.h"
 #include "tests/foreign_rig/size.h"
 

@@ -1,6 +1,5 @@
 // The rates of change: drive, pump, pipes, valves, sides, arm, transducers.
 #include <algorithm>
-#include <cmath>
 
 #include "fluid.h"
 #include "machine.h"

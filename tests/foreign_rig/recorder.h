@@ -4,8 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <string>
-#include <vector>
 
 #include "draw.h"
 #include "machine.h"

@@ -1,6 +1,5 @@
 #include "write.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>

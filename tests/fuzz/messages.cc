@@ -1,6 +1,5 @@
 #include "bus/messages.h"
 
-#include <algorithm>
 #include <array>
 #include <vector>
 

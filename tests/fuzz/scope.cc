@@ -1,7 +1,6 @@
 // What hydro-scope makes of what a browser sends.
 #include <array>
 #include <limits>
-#include <memory>
 
 #include "scope/foxglove_conversation.h"
 #include "scope/live_conversation.h"

@@ -1,7 +1,6 @@
 #include <sys/stat.h>
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bus/seal/bus_key.h"

@@ -1,7 +1,6 @@
 // Power in = rate of stored energy + dissipated power, at each instant and over time.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "model/trajectory/trajectory.h"

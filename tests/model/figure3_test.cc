@@ -1,8 +1,6 @@
 // Figure 3 of the paper: the clamped shaft after a step of T_p = 10 in-lbf from p1 = p2 = 100 psi.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/model/model_case.h"
 
 namespace hydro::testing {

@@ -2,7 +2,6 @@
 // its own tolerance.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tests/model/model_case.h"

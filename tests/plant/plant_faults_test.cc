@@ -8,7 +8,6 @@
 #include <hydro/log_progress_t.hpp>
 #include <hydro/rearm_t.hpp>
 #include <memory>
-#include <set>
 #include <utility>
 #include <vector>
 

@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "runs/recorded/run_table.h"
 #include "tests/runs/log/log_fixture.h"
 

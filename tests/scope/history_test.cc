@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <vector>
 
 namespace hydro::scope {
 namespace {

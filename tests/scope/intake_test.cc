@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <hydro/messages.hpp>
 #include <limits>
 #include <memory>

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <future>
 #include <thread>
 
 #include "base/input_error.h"

@@ -1,5 +1,4 @@
 // [driver] with kind = "front_end".
-#include <cmath>
 
 #include "settings/driver_section.h"
 #include "tests/settings/texts.h"

@@ -1,7 +1,5 @@
 #include "tools/hydro_log/export_verb.h"
 
-#include <cstdio>
-
 #include "base/input_error.h"
 #include "base/new_folder.h"
 #include "base/read_files.h"

@@ -1,6 +1,5 @@
 #include "tools/hydro_plot/run_figures.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "tune/design/sampled_position_loop.h"
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <functional>
 

@@ -1,7 +1,6 @@
 #include "tune/design/stack_loops.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "tune/design/configured_laws.h"
 

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "settings/command_line.h"
 #include "tune/search/tune.h"

@@ -2,10 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "base/number_text.h"
 #include "base/units.h"

@@ -2,9 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
-#include <utility>
 
 #include "page/figure_svg.h"
 #include "page/html_page.h"

@@ -2,7 +2,6 @@
 // model's uncertainty.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "settings/stack_config.h"

@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <exception>
 #include <numbers>
-#include <string>
 
 #include "frames.h"
 

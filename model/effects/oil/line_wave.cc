@@ -8,7 +8,6 @@
 //   I w^2 = beta (1/V_p + 1/(V_ms - V_p)),  R = 2 damping I w,  w = 2 pi frequency.
 // States: p_p1, Q_1, p_p2, Q_2.
 
-#include <cmath>
 #include <numbers>
 
 #include "model/effects/effect.h"

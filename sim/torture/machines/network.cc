@@ -1,7 +1,6 @@
 #include "sim/torture/machines/network.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace hydro::torture {
 namespace {

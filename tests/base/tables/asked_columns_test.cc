@@ -1,8 +1,6 @@
 // Tables of which only some columns are asked for, and what other programs write around the rows.
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "base/tables/clock_text.h"
 #include "base/tables/csv_cells.h"
 #include "base/tables/table.h"

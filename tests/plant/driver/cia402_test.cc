@@ -2,12 +2,9 @@
 // kind of records, a struct can_frame each, stands for the CAN socket, and the test for the drive.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <functional>
-#include <thread>
 #include <vector>
 
 #include "examples/own_driver/cia402/drive.h"

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <string>

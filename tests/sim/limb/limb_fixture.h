@@ -1,10 +1,8 @@
 // A limb in memory, and what its joints say.
 #pragma once
 
-#include <functional>
 #include <hydro/fault_t.hpp>
 #include <hydro/state_t.hpp>
-#include <map>
 #include <string>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <hydro/rearm_t.hpp>
 
 #include "tests/sim/limb/limb_fixture.h"

@@ -1,7 +1,6 @@
 // What the simulator says of a log: true of whole, cut, changed and false ones.
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <string>
 
 #include "runs/log/log_writer.h"
