@@ -271,13 +271,6 @@ class DriverFaultTest(DriverCase):
         good = [s for s in log.states if spans[0][0] < s.tick <= spans[0][1] and not math.isnan(s.p1)]
         self.assertGreaterEqual(len(good), 9)
 
-    # Tests that calls to the board that signals interrupt are not errors of the board.
-    def test_interrupted_calls(self):
-        self.board.order("interrupt")
-        tick = self.log.wait_for("HYDRO_STATE", lambda s: True, "a state").tick
-        self.log.wait_for_tick(tick + 500)
-        self.assertFalse([f for f in self.finish().faults if f.code == "board_error"])
-
     # Tests that a hanging driver keeps the voltage, which shows the purpose of the hardware watchdog: it
     # takes the voltage from the motor.
     def test_hang_is_for_the_watchdog(self):

@@ -3,18 +3,10 @@ logger on the other, the same configuration on each."""
 
 import event_log
 import outcome
-import stack
 import two_hosts
 
 
 class HostsTest(two_hosts.TestCase):
-    # Tests that a lockstep run over two hosts is that of hydro-sim, bit by bit.
-    def test_lockstep(self):
-        self.run_both("--time", "lockstep", "--duration", "1")
-        simulated = self.path("sim.lcmlog")
-        self.run_program("hydro-sim", self.config, "--duration", "1", "-o", simulated)
-        self.assert_identical(self.log_of("desk"), simulated)
-
     # Tests that a real-time run over two hosts loses nothing and brings the arm to its target.
     def test_realtime(self):
         self.run_both("--time", "realtime", "--duration", "2.1", *two_hosts.GENTLE, *two_hosts.PATIENT)

@@ -9,11 +9,10 @@ import signal
 import time
 
 import event_log
-import launched_kills
 import outcome
 import stack
 
-ROLES = launched_kills.ROLES
+ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
 LIMIT = 2.0  # s, what is promised
 # Far longer than the tests, so that no run ends by itself during a test.
 OPTIONS = ("--time", "lockstep", "--duration", "3600")
@@ -109,9 +108,7 @@ class LockstepKillTest(stack.TestCase):
         self.assert_identical(lone, log_file)
 
 
-class LaunchedLockstepKillTest(launched_kills.LaunchedKills, stack.TestCase):
-    limit = LIMIT
-
+class LaunchedLockstepKillTest(stack.TestCase):
     def start_launch(self):
         launch = self.launch(stack.config("demo.toml"), *OPTIONS, "--log", self.path("run.lcmlog"))
         log = stack.LiveLog(self, self.path("run.lcmlog"))
@@ -119,6 +116,29 @@ class LaunchedLockstepKillTest(launched_kills.LaunchedKills, stack.TestCase):
         pids = log.pids()
         self.assertEqual(set(pids), set(ROLES))
         return launch, pids
+
+    def kill_under_launch(self, victim):
+        launch, pids = self.start_launch()
+        since = time.monotonic()
+        os.kill(pids[victim], signal.SIGKILL)
+        self.assertEqual(launch.wait(), 1, launch.report())
+        self.assertLess(time.monotonic() - since, LIMIT + stack.MACHINE_MARGIN)
+        self.assertRegex(launch.stderr, f"{stack.PROGRAMS[victim]} was killed by signal 9")
+        self.assertEqual(stack.still_running(pids.values()), [])
+
+    # Tests the death of each process of a launched stack: hydro-launch names it, ends with 1, and leaves no
+    # orphan.
+    def test_plant_killed(self):
+        self.kill_under_launch("plant")
+
+    def test_pressure_ctrl_killed(self):
+        self.kill_under_launch("pressure_ctrl")
+
+    def test_position_ctrl_killed(self):
+        self.kill_under_launch("position_ctrl")
+
+    def test_logger_killed(self):
+        self.kill_under_launch("logger")
 
     # Tests that a loop that stalls also ends a launched run, and is not left behind.
     def test_pressure_ctrl_stalled(self):

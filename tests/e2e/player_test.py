@@ -92,11 +92,7 @@ class PlayerTest(stack.TestCase):
         self.assertRegex(replay.stdout, r"(?m)^pressure: identical, [1-9]\d* motor commands from [1-9]\d* states$")
         self.assertRegex(replay.stdout, r"(?m)^position: identical, [1-9]\d* pressure commands from [1-9]\d* states$")
 
-    # Tests that hydro-log replay reproduces both controllers of a lockstep run.
-    def test_replay_lockstep(self):
-        self.assert_replays(self.record())
-
-    # Tests that it reproduces the controllers of a run in real time, whatever arrived late there.
+    # Tests that hydro-log replay reproduces both controllers of a run in real time, whatever arrived late there.
     def test_replay_realtime(self):
         self.assert_replays(self.record("--duration", "2", time="realtime"))
 

@@ -6,7 +6,6 @@ import math
 import os
 import random
 import tomllib
-import unittest
 
 import outcome
 import stack

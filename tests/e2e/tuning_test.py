@@ -4,7 +4,6 @@ import re
 import signal
 import subprocess
 
-import event_log
 import fault_case
 import outcome
 import stack

@@ -12,7 +12,6 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 
 // Tests that a killed process stops the others, names it and how it ended, and gives exit 1.
 TEST(LaunchFailureTest, KilledProcessStopsAll) {
@@ -53,16 +52,6 @@ TEST(LaunchFailureTest, BadInputOfAChildIsTwo) {
               Contains(HasSubstr("hydro-position-ctrl ended with exit code 2: stack.toml: no such")));
 }
 
-// Tests that a process that ends with 0 though nobody stopped the run is a failure.
-TEST(LaunchFailureTest, EarlyEndIsAFailure) {
-  StackFolder stack;
-  stack.Script("pressure_ctrl", "status ready;exit 0");
-  auto launch = stack.Launch();
-  EXPECT_EQ(launch->WaitForExit(), 1);
-  EXPECT_THAT(launch->err(),
-              Contains("[launch]        hydro-pressure-ctrl ended though nobody had stopped the run"));
-}
-
 // Tests that a failed run that the plant stopped is reported with the plant's reason, once, and gives exit 1.
 TEST(LaunchFailureTest, PlantReportsFailure) {
   StackFolder stack;
@@ -73,17 +62,6 @@ TEST(LaunchFailureTest, PlantReportsFailure) {
   EXPECT_EQ(launch->WaitForExit(), 1);
   ASSERT_EQ(launch->err().size(), 1u) << launch->text();
   EXPECT_EQ(launch->err()[0], "[launch]        stopped by plant: pressure_ctrl has not answered tick 5");
-}
-
-// Tests that processes that are not ready in time are named, and only those.
-TEST(LaunchFailureTest, NotReadyInTime) {
-  StackFolder stack;
-  stack.Script("position_ctrl", "wait");
-  auto launch = stack.Launch({"--set", "time.start_timeout_s=0.5"});
-  EXPECT_EQ(launch->WaitForExit(), 1);
-  const std::string line = launch->WaitForLine("not ready within");
-  EXPECT_THAT(line, HasSubstr("time.start_timeout_s): hydro-position-ctrl"));
-  EXPECT_THAT(line, Not(HasSubstr("hydro-plant")));
 }
 
 // Tests that a process that does not end on SIGTERM is killed and named, and makes the exit code 1.

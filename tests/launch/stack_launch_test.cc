@@ -243,11 +243,6 @@ TEST_F(StackLaunchTest, KilledPlantSaysNothingOfItsOutput) {
   EXPECT_THAT(report_.errors, Contains(HasSubstr("no plant or driver has said what voltage it left")));
 }
 
-// Tests that exit code 2 is passed on: a process has refused its input.
-TEST_F(StackLaunchTest, RefusedInput) {
-  EXPECT_EQ(Run(1s, [&] { children_.End("hydro-pressure-ctrl", {2, 0}); }), 2);
-}
-
 // Tests that the end of a logger that is not required is said, and ends nothing.
 TEST_F(StackLaunchTest, OptionalLogger) {
   config_.logger.required = false;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "base/input_error.h"
+#include "tests/firmware/frame_maker.h"
 #include "tests/plant/front_end/device_bench.h"
 
 namespace hydro::plant {
@@ -303,21 +304,10 @@ TEST(FrontEndTroubleTest, NobodyOrSomebodyElse) {
   EXPECT_THAT(WhyNot([](DeviceBench& bench) {
                 bench.device_runs = false;
                 bench.rig->Poll();
-                uint8_t frame[76] = {2, HYDRO_IDENTITY};  // of protocol 2
-                const uint32_t crc = hydro_crc32(0, frame, 72);
-                for (int i = 0; i < 4; ++i) frame[72 + i] = static_cast<uint8_t>(crc >> (8 * i));
-                Bytes wire = {0, 0};
-                size_t code_at = 1;
-                for (const uint8_t byte : frame) {
-                  if (byte == 0) {
-                    wire[code_at] = static_cast<uint8_t>(wire.size() - code_at);
-                    code_at = wire.size();
-                  }
-                  wire.push_back(byte);
-                }
-                wire[code_at] = static_cast<uint8_t>(wire.size() - code_at);
-                wire.push_back(0);
-                bench.SendToComputer(wire);
+                Bytes content(72);
+                content[0] = 2;  // the protocol
+                content[1] = HYDRO_IDENTITY;
+                bench.SendToComputer(firmware::testing::Stuffed(content));
               }),
               HasSubstr("a front end that speaks protocol 2, allowed protocol 1"));
   EXPECT_THAT(WhyNot([](DeviceBench& bench) {
