@@ -37,10 +37,7 @@ SequenceMonitor::Verdict SequenceMonitor::ObserveOther(int64_t session, Place pl
     behind_ = place;
     if (goes_on && now - advanced_ > alive_) return Restart(session, place, now);
   }
-  if (place.sequence > newest_.sequence) {
-    ++ticks_back_;
-    ++refused_since_;
-  }
+  if (place.sequence > newest_.sequence) ++refused_since_;
   ++duplicates_;
   return Verdict::kDuplicate;
 }

@@ -56,7 +56,6 @@ class SequenceMonitor {
   int64_t lost() const { return lost_; }              // messages missing in total, from the first received on
   int64_t duplicates() const { return duplicates_; }  // kDuplicate verdicts
   int64_t restarts() const { return restarts_; }      // kRestarted verdicts
-  int64_t ticks_back() const { return ticks_back_; }  // messages in sequence whose tick went back
 
  private:
   struct Place {
@@ -92,7 +91,6 @@ class SequenceMonitor {
   int64_t lost_ = 0;
   int64_t duplicates_ = 0;
   int64_t restarts_ = 0;
-  int64_t ticks_back_ = 0;
 };
 
 }  // namespace hydro::bus

@@ -49,7 +49,6 @@ class VoltageGuard {
   bool any() const { return (present_ | latched_) != 0; }
   bool any_but(Cause cause) const { return ((present_ | latched_) & ~Bit(cause)) != 0; }
   bool any_present() const { return present_ != 0; }
-  bool any_latched() const { return latched_ != 0; }
 
   // The voltage that may reach the motor: all of the commanded voltage, or zero.
   double Voltage(double commanded) const { return any() ? 0 : commanded; }

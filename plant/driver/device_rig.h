@@ -33,7 +33,6 @@ class DeviceRig : public Rig {
   double Drive(double voltage) override;
   OutputLeft Zero() noexcept override;
 
-  const std::string& device_name() const { return description_.name; }
   pid_t guardian() const { return guardian_->pid(); }
 
  private:

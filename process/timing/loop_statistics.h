@@ -45,7 +45,6 @@ class LoopStatistics {
   void set_lost_messages(int64_t total) { Count(total, &total_lost_, LoopQuantity::kGap); }
   int64_t lost_messages() const { return total_lost_; }
   void AddMissedDeadlines(int64_t count) { set_missed_deadlines(SaturatingSum(total_missed_, count)); }
-  void AddLostMessages(int64_t count) { set_lost_messages(SaturatingSum(total_lost_, count)); }
 
   // Records the number of messages that are waiting now; a report holds the largest number since the previous
   // one.

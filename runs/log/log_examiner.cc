@@ -212,7 +212,6 @@ void LogExaminer::Conclude() {
     return;
   }
   verdict_.unchecked_messages = static_cast<int64_t>(pending_.size());
-  verdict_.unchecked_from = checked_end_;
   const int64_t utime = pending_.empty() ? checked_utime_ : pending_.back().utime;
   verdict_.where = "no mark of the end at " + At(verdict_.readable_end, utime) +
                    ": it is still being recorded, was cut off, or its recorder was killed";

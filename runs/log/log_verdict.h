@@ -22,9 +22,8 @@ struct LogVerdict {
   std::string where;
   // Events that end at or before this byte can be read; what follows is damaged or torn.
   int64_t readable_end = 0;
-  // Incomplete: the messages after the last check event, which no checksum vouches for, and where they begin.
+  // Incomplete: the messages after the last check event, which no checksum vouches for.
   int64_t unchecked_messages = 0;
-  int64_t unchecked_from = 0;
   std::string note;  // where the log comes from, if not from a recording (hydro-log repair states it here)
   std::vector<std::string> remarks;  // remarks of the recorder on what it left out
   bool found_end = false;            // the (last) mark of the end was there

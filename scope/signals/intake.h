@@ -59,9 +59,9 @@ class Intake {
   void OnSettings(const tuned_settings_t& settings);
   void OnTuningAnswer(const tuning_answer_t& answer);
   void OnRearm(const rearm_t& rearm, int64_t utime);
-  void OnStatus(const process_status_t& status, int64_t utime);
-  void OnStatistics(const loop_statistics_t& statistics, int64_t utime);
-  ProcessReport& Report(const std::string& role, const std::string& host, int64_t utime);
+  void OnStatus(const process_status_t& status);
+  void OnStatistics(const loop_statistics_t& statistics);
+  ProcessReport& Report(const std::string& role, const std::string& host);
   void AddEvent(double t, std::string kind, const std::string& source, const std::string& code,
                 const std::string& text);
 

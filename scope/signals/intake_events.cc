@@ -64,8 +64,8 @@ bool Intake::TakeRare(std::string_view channel, const uint8_t* data, int size, i
          take([&](const rearm_t& m) { OnRearm(m, utime); }, rearm_t{}) ||
          take([&](const tuned_settings_t& m) { OnSettings(m); }, tuned_settings_t{}) ||
          take([&](const tuning_answer_t& m) { OnTuningAnswer(m); }, tuning_answer_t{}) ||
-         take([&](const process_status_t& m) { OnStatus(m, utime); }, process_status_t{}) ||
-         take([&](const loop_statistics_t& m) { OnStatistics(m, utime); }, loop_statistics_t{}) ||
+         take([&](const process_status_t& m) { OnStatus(m); }, process_status_t{}) ||
+         take([&](const loop_statistics_t& m) { OnStatistics(m); }, loop_statistics_t{}) ||
          take([&](const run_description_t& m) { OnDescription(m); }, run_description_t{});
 }
 
@@ -84,8 +84,8 @@ void Intake::TakeOfLimb(const bus::Channels& limb, std::string_view channel, con
   static_cast<void>(take([&](const fault_t& m) { OnFault(m); }, fault_t{}) ||
                     take([&](const active_faults_t& m) { OnActiveFaults(m); }, active_faults_t{}) ||
                     take(on_stop, stop_t{}) ||
-                    take([&](const process_status_t& m) { OnStatus(m, utime); }, process_status_t{}) ||
-                    take([&](const loop_statistics_t& m) { OnStatistics(m, utime); }, loop_statistics_t{}));
+                    take([&](const process_status_t& m) { OnStatus(m); }, process_status_t{}) ||
+                    take([&](const loop_statistics_t& m) { OnStatistics(m); }, loop_statistics_t{}));
 }
 
 // A plant describes its run before it sends its first state.
@@ -184,27 +184,26 @@ void Intake::OnRearm(const rearm_t& rearm, int64_t utime) {
            rearm.kind == rearm_t::ACCEPTED ? "accepted" : "refused", rearm.text);
 }
 
-ProcessReport& Intake::Report(const std::string& role, const std::string& host, int64_t utime) {
+ProcessReport& Intake::Report(const std::string& role, const std::string& host) {
   const std::string key = Shown(role) + " on " + Shown(host);
   if (run_->processes.size() >= kMostProcesses && !run_->processes.contains(key)) return flood_;
   ProcessReport& report = run_->processes[key];
   report.role = Shown(role);
   report.host = Shown(host);
-  report.heard_utime = utime;
   return report;
 }
 
-void Intake::OnStatus(const process_status_t& status, int64_t utime) {
+void Intake::OnStatus(const process_status_t& status) {
   if (status.role == process::kLaunchRole) return;
-  ProcessReport& report = Report(status.role, status.host, utime);
+  ProcessReport& report = Report(status.role, status.host);
   report.state = StateName(status);
   report.text = Shown(status.text);
   if (status.session == session_ && process::HasLeft(status)) left_ = true;
 }
 
-void Intake::OnStatistics(const loop_statistics_t& statistics, int64_t utime) {
+void Intake::OnStatistics(const loop_statistics_t& statistics) {
   if (statistics.whole_run != 0) return;  // it is the sum of the reports before it
-  ProcessReport& report = Report(statistics.role, statistics.host, utime);
+  ProcessReport& report = Report(statistics.role, statistics.host);
   if (statistics.interval_s > 0)
     report.rate_hz = static_cast<double>(statistics.cycles) / statistics.interval_s;
   report.missed = SaturatingSum(report.missed, statistics.missed_deadlines);

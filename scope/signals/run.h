@@ -58,7 +58,6 @@ struct ProcessReport {
   int64_t lost = 0;    // messages lost
   double latency_p99_us = 0;
   std::string faults;  // those still active, separated by blanks
-  int64_t heard_utime = 0;
 };
 
 struct Run {

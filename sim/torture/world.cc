@@ -191,7 +191,6 @@ void World::Send(PacketPtr packet, int sender) {
   if (packet->channel == plan_channel_) newest_plan_ = packet;
   network_.Send(packet, static_cast<int>(process.role()), receivers_);
   observer_.OnSent(*packet, process);
-  if (schedule_.launcher) launches_.OnSent(*packet);
 }
 
 void World::Handled(const Packet& packet, int receiver) {

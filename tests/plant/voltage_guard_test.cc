@@ -60,7 +60,7 @@ TEST(VoltageGuardTest, TicksInVoltageOut) {
       tick(false);
       const bool latches =
           (rearm == settings::Rearm::kExplicit && cause != Cause::kOtherJoint) || VoltageGuard::Trips(cause);
-      EXPECT_EQ(guard.any_latched(), latches);
+      EXPECT_EQ(guard.latched(cause), latches);
       guard.Release(&standing);
       EXPECT_THAT(standing, IsEmpty());
       tick(false);

@@ -119,10 +119,6 @@ void LaunchInvariants::ReportOverdue() {
                                static_cast<double>(*now_ - *launch_->cause) * 1e-9, launch_->why));
 }
 
-void LaunchInvariants::OnSent(const Packet& packet) {
-  if (launch_ && packet.sender == launch_->launcher && packet.channel == stop_) launch_->stop_sent = true;
-}
-
 void LaunchInvariants::OnHandled(const Packet& packet, const SimulatedProcess& launcher) {
   if (!launch_) return;
   if (packet.channel == stop_) OnStop(packet, launcher);

@@ -32,7 +32,6 @@ class LaunchInvariants {
   void OnInterrupt();
   // The launcher stands still until then.
   void OnFrozen(TrueTime until);
-  void OnSent(const Packet& packet);
   void OnHandled(const Packet& packet, const SimulatedProcess& launcher);
   // A process has ended: the launcher, a child of it, or another process.
   void OnEnd(const SimulatedProcess& process);
@@ -57,7 +56,6 @@ class LaunchInvariants {
     TrueTime frozen_until = 0;
     TrueTime frozen = 0;  // how long it has stood still since then
     bool stop_heard = false;
-    bool stop_sent = false;
     bool others = false;    // it heard a process with one of its roles before it started any
     bool confused = false;  // a status that it heard was changed on the way
     int interrupts = 0;

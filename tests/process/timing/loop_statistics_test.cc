@@ -60,7 +60,7 @@ TEST(LoopStatisticsTest, TotalCoversTheRun) {
   for (int i = 0; i < 2500; ++i) {
     statistics.RecordCycle(kStart + i * 1ms, 10us);
     statistics.RecordQueueDepth(i == 100 ? 50 : 1);
-    statistics.AddLostMessages(1);
+    statistics.set_lost_messages(i + 1);
     statistics.Poll(kStart + i * 1ms);
   }
   const loop_statistics_t total = statistics.Total(kStart + 2500ms);
