@@ -21,6 +21,7 @@
 #include "base/read_files.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
+#include "tests/temporary_folder.h"
 
 // The calls that this process makes, in their order: these take the place of the library's own.
 namespace {
@@ -59,13 +60,7 @@ std::string ErrorOf(const std::function<void()>& action) {
 
 class NewFileTest : public testing::Test {
  protected:
-  NewFileTest() {
-    char name[] = "/tmp/hydro_new_file_XXXXXX";
-    folder_ = mkdtemp(name);
-  }
-  ~NewFileTest() override { std::filesystem::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string Path(const std::string& name) const { return folder_ / name; }
   std::string Make(const std::string& name, const std::string& text) const {
     std::ofstream(Path(name)) << text;
     return Path(name);
@@ -75,7 +70,7 @@ class NewFileTest : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  std::string folder_;
+  const TemporaryFolder folder_;
 };
 
 // Tests that a file that this process has read is never replaced, whatever path names it.
@@ -84,7 +79,7 @@ TEST_F(NewFileTest, KeepsWhatWasRead) {
   std::filesystem::create_symlink(input, Path("symlink"));
   std::filesystem::create_hard_link(input, Path("hardlink"));
   EXPECT_EQ(ReadTextFile(Path("symlink")), "precious");
-  for (const std::string& name : {input, Path("symlink"), Path("hardlink"), folder_ + "/./input.toml"}) {
+  for (const std::string& name : {input, Path("symlink"), Path("hardlink"), folder_ / "./input.toml"}) {
     for (const Opening opening : {Opening::kDirect, Opening::kTemporary}) {
       EXPECT_THAT(ErrorOf([&] { NewFile(name, opening); }), HasSubstr("a file that is read")) << name;
     }
@@ -128,7 +123,8 @@ TEST_F(NewFileTest, KeepsWhatIsThere) {
   EXPECT_THAT(ErrorOf([&] { CheckCanBeCreated(log); }), HasSubstr("--force"));
   EXPECT_THAT(ErrorOf([&] { WriteTextFile(log, "today"); }), HasSubstr("--force"));
   EXPECT_EQ(TextOf(log), "yesterday");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);  // nothing is left beside it
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}),
+            1);  // nothing is left beside it
   WriteTextFile(Make("empty", ""), "today");
   EXPECT_EQ(TextOf(Path("empty")), "today");
   CheckIsNew("/dev/null");
@@ -187,7 +183,7 @@ TEST_F(NewFileTest, KeepsWhatIsBeingWritten) {
     }
   }
   AllowReplacing(false);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
   recording.Finish();
   EXPECT_EQ(TextOf(Path("run")), "so farso far");
   const int asking = open(Path("run").c_str(), O_RDONLY);

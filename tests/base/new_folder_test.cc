@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "base/input_error.h"
+#include "tests/temporary_folder.h"
 
 namespace hydro {
 namespace {
@@ -17,13 +17,7 @@ using ::testing::HasSubstr;
 
 class NewFolderTest : public ::testing::Test {
  protected:
-  NewFolderTest() {
-    char name[] = "/tmp/hydro_new_folder_XXXXXX";
-    folder_ = mkdtemp(name);
-  }
-  ~NewFolderTest() override { fs::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string Path(const std::string& name) const { return folder_ / name; }
   std::string ErrorOf(const std::string& name) const {
     try {
       const NewFolder folder(Path(name));
@@ -33,7 +27,7 @@ class NewFolderTest : public ::testing::Test {
     return "no error";
   }
 
-  std::string folder_;
+  const TemporaryFolder folder_;
 };
 
 // Tests that the folder has its name with all files in it, or leaves nothing; an empty one of its name is
@@ -44,7 +38,7 @@ TEST_F(NewFolderTest, WholeOrNotAtAll) {
     std::ofstream(folder.path() + "/x.csv") << "x";
     EXPECT_FALSE(fs::exists(Path("a")));
   }
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
   fs::create_directory(Path("a"));
   fs::create_directory(Path("a.part"));  // somebody's
   NewFolder folder(Path("a/"));

@@ -12,24 +12,17 @@
 
 #include "base/text_file.h"
 #include "batch/study/study.h"
+#include "tests/temporary_folder.h"
 
 namespace hydro::batch {
 
 class StudyFolder {
  public:
-  StudyFolder() {
-    std::string name = testing::TempDir() + "batch_XXXXXX";
-    path_ = mkdtemp(name.data());
-  }
-  ~StudyFolder() { std::filesystem::remove_all(path_); }
-  StudyFolder(const StudyFolder&) = delete;
-  StudyFolder& operator=(const StudyFolder&) = delete;
-
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+  std::string operator/(const std::string& name) const { return folder_ / name; }
 
   std::string Write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ + "/" + name) << text;
-    return path_ + "/" + name;
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
   }
   Study Read(const std::string& text) const { return ReadStudy(Write("study.toml", text)); }
 
@@ -39,14 +32,14 @@ class StudyFolder {
       Read(text);
     } catch (const InputError& error) {
       std::string line = error.what();
-      if (line.starts_with(path_)) line.erase(0, path_.size() + 1);
+      if (line.starts_with(folder_.path())) line.erase(0, folder_.path().size() + 1);
       return line;
     }
     return "";
   }
 
  private:
-  std::string path_;
+  const TemporaryFolder folder_;
 };
 
 // A study whose cases are a command of the shell; the keys k and l vary.

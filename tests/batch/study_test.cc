@@ -1,5 +1,6 @@
 #include "batch/study/study.h"
 
+#include "batch/study/case_inputs.h"
 #include "tests/batch/study_folder.h"
 
 namespace hydro::batch {

@@ -14,6 +14,7 @@
 #include "experiments/report/experiment_files.h"
 #include "experiments/report/report.h"
 #include "experiments/studies/experiment.h"
+#include "tests/temporary_folder.h"
 
 namespace hydro::experiments {
 namespace {
@@ -63,14 +64,8 @@ std::vector<Experiment> Two() {
 
 class RunExperimentsTest : public ::testing::Test {
  protected:
-  RunExperimentsTest() {
-    std::string pattern = (fs::temp_directory_path() / "hydro-experiments-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~RunExperimentsTest() override { fs::remove_all(folder_); }
-
   int Run(const std::vector<Experiment>& experiments, ExperimentRequest request) {
-    if (request.folder == ExperimentRequest().folder) request.folder = folder_ + "/out";
+    if (request.folder == ExperimentRequest().folder) request.folder = folder_ / "out";
     char* out = nullptr;
     char* errors = nullptr;
     size_t out_size = 0;
@@ -96,18 +91,18 @@ class RunExperimentsTest : public ::testing::Test {
 
   std::vector<std::string> Files() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_ + "/out"))
+    for (const auto& entry : fs::directory_iterator(folder_ / "out"))
       names.push_back(entry.path().filename());
     return names;
   }
   std::string Read(const std::string& name) const {
-    std::ifstream in(folder_ + "/out/" + name);
+    std::ifstream in(folder_ / ("out/" + name));
     std::stringstream text;
     text << in.rdbuf();
     return text.str();
   }
 
-  std::string folder_;
+  const TemporaryFolder folder_;
   std::string out_;
   std::string errors_;
 };
@@ -134,9 +129,9 @@ TEST_F(RunExperimentsTest, AllTwice) {
   std::map<std::string, std::string> first;
   for (const std::string& name : Files()) first[name] = Read(name);
   EXPECT_EQ(first.size(), 9u);
-  EXPECT_EQ(Run(Two(), {.name = "all", .folder = folder_ + "/other", .jobs = 8}), 0);
-  fs::remove_all(folder_ + "/out");
-  fs::rename(folder_ + "/other", folder_ + "/out");
+  EXPECT_EQ(Run(Two(), {.name = "all", .folder = folder_ / "other", .jobs = 8}), 0);
+  fs::remove_all(folder_ / "out");
+  fs::rename(folder_ / "other", folder_ / "out");
   for (const auto& [name, text] : first) EXPECT_EQ(Read(name), text) << name;
   const std::string& html = first["index.html"];
   EXPECT_THAT(html, HasSubstr("<section id=\"fig3\">"));
@@ -162,8 +157,8 @@ TEST_F(RunExperimentsTest, FailureStopsNoOther) {
   EXPECT_THAT(errors_, HasSubstr("hydro-experiment: fig2 failed: the <pump> broke\n"));
   EXPECT_THAT(Read("index.html"), HasSubstr("the &lt;pump&gt; broke"));
   EXPECT_THAT(Read("index.html"), HasSubstr("<section id=\"friction\">"));
-  EXPECT_FALSE(fs::exists(folder_ + "/out/fig2.json"));
-  EXPECT_TRUE(fs::exists(folder_ + "/out/fig3.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/fig2.json"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/fig3.json"));
 }
 
 // Tests that a finding without evidence makes the whole report an error, and that the report names it.
@@ -192,7 +187,7 @@ TEST_F(RunExperimentsTest, WrongUsage) {
   EXPECT_THAT(refusal(run), HasSubstr("--run: found for 'all'"));
   run.name = "friction";
   EXPECT_EQ(refusal(run), "x.csv: no steady state");
-  run.folder = folder_ + "/out";
+  run.folder = folder_ / "out";
   run.options.measured_run = run.folder + "/friction.csv";
   std::ofstream(run.options.measured_run) << "time_s\n0\n";
   EXPECT_THAT(refusal(run), HasSubstr("out/friction.csv: found the name of a file that is read"));

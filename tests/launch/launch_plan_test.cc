@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/temporary_folder.h"
+
 namespace hydro::launch {
 namespace {
 
@@ -18,16 +20,12 @@ using ::testing::IsEmpty;
 class LaunchPlanTest : public ::testing::Test {
  protected:
   LaunchPlanTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "hydro-plan-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
-    folder_ = name;
     for (const char* program :
          {"hydro-plant", "hydro-pressure-ctrl", "hydro-position-ctrl", "hydro-logger"}) {
       MakeProgram(folder_ / program);
     }
     request_.config_file = "stack.toml";
   }
-  ~LaunchPlanTest() override { std::filesystem::remove_all(folder_); }
 
   static void MakeProgram(const std::filesystem::path& path) {
     std::ofstream(path) << "#!/bin/sh\n";
@@ -51,7 +49,8 @@ class LaunchPlanTest : public ::testing::Test {
     return "no error";
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
   settings::StackConfig config_;
   LaunchRequest request_;
 };

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -14,6 +13,7 @@
 #include "tests/free_udp_port.h"
 #include "tests/launch/launched_program.h"
 #include "tests/settings/small_texts.h"
+#include "tests/temporary_folder.h"
 
 namespace hydro::launch {
 
@@ -21,9 +21,6 @@ class StackFolder {
  public:
   explicit StackFolder(const std::vector<std::string>& programs = {"hydro-plant", "hydro-pressure-ctrl",
                                                                    "hydro-position-ctrl", "hydro-logger"}) {
-    std::string name = (std::filesystem::temp_directory_path() / "hydro-launch-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
-    folder_ = name;
     // hydro-launch looks in its own folder: it must be a copy, not a link to elsewhere.
     std::filesystem::copy_file(HYDRO_LAUNCH, folder_ / "hydro-launch");
     for (const std::string& program : programs) {
@@ -36,9 +33,6 @@ class StackFolder {
     environment["HYDRO_FAKE_logger"] = "status ready;wait-term;status done";
     WriteConfig("");
   }
-  ~StackFolder() { std::filesystem::remove_all(folder_); }
-  StackFolder(const StackFolder&) = delete;
-  StackFolder& operator=(const StackFolder&) = delete;
 
   std::map<std::string, std::string> environment;
 
@@ -69,7 +63,8 @@ class StackFolder {
   }
 
  private:
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
   std::string url_ = FreeBusUrl();
 };
 

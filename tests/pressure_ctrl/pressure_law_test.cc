@@ -28,6 +28,18 @@ SecondOrder ClosedLoop(const model::Parameters& p, const PressureGains& gains, i
   return {std::abs(root), -root.real() / std::abs(root)};
 }
 
+// The model's own linearisation with the arm held there; with one side, valve 1 holds side 1 at p_3.
+model::LinearModel Linear(const model::ModelDescription& model, double arm_angle, int sides) {
+  model::ActuatorOptions options;
+  options.shaft = model::Shaft::kClamped;
+  options.arm_angle = arm_angle;
+  model::Mode mode;
+  mode.pump = 1;
+  mode.valve_1 = sides == 1;
+  const double state[] = {0, 1, 100, 400};
+  return model::Linearise(model::Equations(model, options), 0, 0, mode, state);
+}
+
 // Tests that natural frequency 150 rad/s and damping 0.5 give the gains computed independently from the
 // paper's equations, for both volumes compressing and for one side held at p_3.
 TEST(PressureLawTest, DerivedGainsMatchThePaper) {
@@ -56,16 +68,8 @@ TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedForAwayFromMidstroke) {
   model::ModelDescription model;
   model.parameters = Table1();
   for (const double arm_angle : {0.4, -0.6}) {
-    model::ActuatorOptions options;
-    options.shaft = model::Shaft::kClamped;
-    options.arm_angle = arm_angle;
-    const model::Equations equations(model, options);
     for (const int sides : {1, 2}) {
-      model::Mode mode;
-      mode.pump = 1;
-      mode.valve_1 = sides == 1;  // holds side 1 at p_3
-      const double state[] = {0, 1, 100, 400};
-      const model::LinearModel linear = model::Linearise(equations, 0, 0, mode, state);
+      const model::LinearModel linear = Linear(model, arm_angle, sides);
       const auto A = [&](int i, int j) { return linear.A[i + j * 4]; };
       const PressureGains gains = DerivePressureGains(model.parameters, arm_angle, 150, 0.5, sides);
       // v = -k_p (dp + k_v theta') closes the loop of dp' = rise theta' and theta'' = A theta' + A dp + B v.
@@ -92,16 +96,8 @@ TEST(PressureLawTest, DerivedGainsServeUnequalSides) {
                    {"pump.unequal_displacements", {{"difference", 0.15}}, {}}};
   const model::Differences differ = model::DifferencesOf(model);
   for (const double arm_angle : {0.0, 0.3}) {
-    model::ActuatorOptions options;
-    options.shaft = model::Shaft::kClamped;
-    options.arm_angle = arm_angle;
-    const model::Equations equations(model, options);
     for (const int sides : {1, 2}) {
-      model::Mode mode;
-      mode.pump = 1;
-      mode.valve_1 = sides == 1;
-      const double state[] = {0, 1, 100, 400};
-      const model::LinearModel linear = model::Linearise(equations, 0, 0, mode, state);
+      const model::LinearModel linear = Linear(model, arm_angle, sides);
       const auto A = [&](int i, int j) { return linear.A[i + j * 4]; };
       const PressureGains gains = DerivePressureGains(model.parameters, arm_angle, 150, 0.5, sides, differ);
       const double rise_1 = A(model::kP1, model::kMotorSpeed), rise_2 = A(model::kP2, model::kMotorSpeed);

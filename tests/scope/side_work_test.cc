@@ -13,6 +13,7 @@
 #include "base/tables/table.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"
+#include "tests/temporary_folder.h"
 
 namespace hydro::scope {
 namespace {
@@ -20,15 +21,8 @@ namespace {
 // A temporary folder of the test's own.
 class SideWorkTest : public ::testing::Test {
  protected:
-  SideWorkTest() {
-    std::string name = ::testing::TempDir() + "/side_work_XXXXXX";
-    temporary_ = mkdtemp(name.data());
-    setenv("TMPDIR", name.c_str(), 1);
-  }
-  ~SideWorkTest() override {
-    unsetenv("TMPDIR");
-    std::filesystem::remove_all(temporary_);
-  }
+  SideWorkTest() { setenv("TMPDIR", folder_.path().c_str(), 1); }
+  ~SideWorkTest() override { unsetenv("TMPDIR"); }
 
   static void MakeOld(const std::filesystem::path& folder) {
     const timespec times[2] = {{.tv_sec = 1'000'000'000, .tv_nsec = 0},
@@ -56,7 +50,8 @@ class SideWorkTest : public ::testing::Test {
     return end;
   }
 
-  std::filesystem::path temporary_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path temporary_ = folder_.path();
 };
 
 // Tests that the end of a scope does not wait for who reads a log or a table, however long that takes.

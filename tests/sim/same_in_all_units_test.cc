@@ -16,6 +16,7 @@
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 #include "tests/model_in_units.h"
+#include "tests/temporary_folder.h"
 #include "tune/design/loop_check.h"
 
 namespace hydro::sim {
@@ -237,20 +238,18 @@ constexpr double kLimbsAlike = 2e-3;
 
 // Tests the same of a limb, whose joints load each other by an arm, with every shipped model.
 TEST(SameInAllUnits, Limbs) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("hydro_units_of_limbs_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const std::vector<model::ModelDescription> models = ShippedModels();
   for (size_t m = 0; m < models.size(); ++m) {
     const model::ModelDescription &hip = models[m], &knee = models[(m + 1) % models.size()];
-    const std::vector<Motion> first = LimbMotion(folder, hip, knee);
+    const std::vector<Motion> first = LimbMotion(folder.path(), hip, knee);
     ASSERT_EQ(first[1].states.size(), 1201u) << hip.name;
     EXPECT_EQ(first[0].exit_code, 0) << hip.name;
     EXPECT_GT(std::abs(first[0].states[600].arm_angle - first[0].states[0].arm_angle), 1e-4) << hip.name;
     EXPECT_GT(std::abs(first[1].states[600].arm_angle - first[1].states[0].arm_angle), 1e-4) << knee.name;
     for (const UnitSystem& units : hydro::testing::kSystems) {
-      const std::vector<Motion> other =
-          LimbMotion(folder, hydro::testing::InUnits(hip, units), hydro::testing::InUnits(knee, units));
+      const std::vector<Motion> other = LimbMotion(folder.path(), hydro::testing::InUnits(hip, units),
+                                                   hydro::testing::InUnits(knee, units));
       for (size_t i = 0; i < first.size(); ++i) {
         ASSERT_EQ(other[i].states.size(), first[i].states.size()) << hip.name << " in " << units.length;
         EXPECT_LT(Difference(first[i], hip.units, other[i], units), kLimbsAlike)
@@ -258,7 +257,6 @@ TEST(SameInAllUnits, Limbs) {
       }
     }
   }
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

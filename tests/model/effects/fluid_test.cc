@@ -1,13 +1,26 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "tests/model/effects/effect_case.h"
-#include "tests/model/effects/fluid_case.h"
 #include "tests/model/model_case.h"
 
 namespace hydro::testing {
 namespace {
+
+// Time in which the external leakage c_E takes both sides from `high` to `low`: the integral of V dp over
+// beta(p) c_E (p - p_3), by Simpson's rule.
+double TimeToFall(double high, double low, double c_E, const std::function<double(double)>& beta) {
+  const int steps = 2000;
+  double time = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const double p = low + (high - low) * i / steps;
+    const double weight = i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2;
+    time += weight * 3.16 / (beta(p) * c_E * (p - 100)) * (high - low) / steps / 3;
+  }
+  return time;
+}
 
 // Tests that pressure falls as the fluid's modulus says at each pressure: 1/beta plus that of air of which a
 // volume 0.02 at 14.6959 psi has become 0.02 (p_atm/p)^(1/1.4).

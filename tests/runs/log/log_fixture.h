@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -18,29 +17,21 @@
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"
 #include "runs/recorded/run_log.h"
+#include "tests/temporary_folder.h"
 
 namespace hydro::log {
 
 // A folder that is removed with everything in it.
 class LogTest : public testing::Test {
  protected:
-  LogTest() {
-    // In memory where the system has such a folder: thousands of logs are written, each to the disk
-    // (new_file.h).
-    const std::string base = std::filesystem::exists("/dev/shm") ? "/dev/shm" : testing::TempDir();
-    std::string pattern = base + "/hydro_log_XXXXXX";
-    folder_ = mkdtemp(pattern.data());
-    AllowReplacing();  // tests write the same names again and again; new_file_test is about this
-  }
-  ~LogTest() override {
-    AllowReplacing(false);
-    std::filesystem::remove_all(folder_);
-  }
+  LogTest() { AllowReplacing(); }  // tests write the same names again and again; new_file_test is about this
+  ~LogTest() override { AllowReplacing(false); }
 
-  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string Path(const std::string& name) const { return folder_ / name; }
 
  private:
-  std::string folder_;
+  // In memory, because thousands of logs are written, each to the disk (new_file.h).
+  const TemporaryFolder folder_{TemporaryFolder::InMemory()};
 };
 
 inline std::string ReadBytes(const std::string& file) {

@@ -12,6 +12,7 @@
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 #include "tests/settings/small_texts.h"
+#include "tests/temporary_folder.h"
 #include "tests/tools/hydro_log/short_run.h"
 
 namespace hydro::hydro_log {
@@ -24,8 +25,8 @@ motor_speed = 0.1
 
 // A simulated run, recorded into a file and read back.
 runs::RunLog Recorded() {
-  std::string folder = ::testing::TempDir() + "/hydro_replay_XXXXXX";  // tests run side by side
-  const std::string file = std::string(mkdtemp(folder.data())) + "/run.lcmlog";
+  const TemporaryFolder folder;
+  const std::string file = folder / "run.lcmlog";
   const settings::StackConfig config =
       settings::ParseStackConfig(kConfig, "test.toml", settings::kModelText, "model.toml");
   log::LogWriter writer(file, Opening::kTemporary);
@@ -34,9 +35,7 @@ runs::RunLog Recorded() {
   });
   writer.Finish();
   EXPECT_EQ(result.exit_code, 0) << result.failure;
-  runs::RunLog log = runs::ReadRunLog(file);
-  std::filesystem::remove_all(folder);
-  return log;
+  return runs::ReadRunLog(file);
 }
 
 class ReplayTest : public ::testing::TestWithParam<ReplayedController> {};
