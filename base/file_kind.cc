@@ -1,5 +1,8 @@
 #include "base/file_kind.h"
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <utility>
 
 namespace hydro {
@@ -97,6 +100,13 @@ Words WordsFor(FileKind kind) {
 }
 
 }  // namespace
+
+std::string EndingOf(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
 
 std::optional<FileKind> FindFileKind(std::string_view beginning) {
   if (beginning.starts_with("\xef\xbb\xbf")) beginning.remove_prefix(3);

@@ -29,6 +29,9 @@ enum class FileKind {
   kSchedule  // of hydro-torture
 };
 
+// ".csv" for "Run.CSV".
+std::string EndingOf(const std::string& file);
+
 // The kind, from the beginning of the file: 4 KiB or more, if the file has as many. Empty for tables and any
 // other text, and for unknown kinds.
 std::optional<FileKind> FindFileKind(std::string_view beginning);

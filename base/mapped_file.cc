@@ -9,26 +9,13 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "base/descriptor.h"
 #include "base/input_error.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 
 namespace hydro {
 namespace {
-
-class Descriptor {
- public:
-  explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
-  ~Descriptor() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
 
 [[noreturn]] void ThrowCannotRead(const std::string& file, int error) {
   throw InputError(file + ": cannot be read: " + std::strerror(error) + "; a readable file is needed");
@@ -53,14 +40,14 @@ MappedFile::MappedFile(const std::string& file) {
     CheckIsFile(file);
   }
   const Descriptor descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (descriptor.get() < 0) ThrowCannotRead(file, errno);
+  if (descriptor.number() < 0) ThrowCannotRead(file, errno);
   struct stat status;
-  if (fstat(descriptor.get(), &status) != 0) ThrowCannotRead(file, errno);
+  if (fstat(descriptor.number(), &status) != 0) ThrowCannotRead(file, errno);
   if (S_ISREG(status.st_mode)) {
     RememberRead(file);
     size_ = static_cast<size_t>(status.st_size);
     if (size_ == 0) return;
-    void* mapping = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor.get(), 0);
+    void* mapping = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor.number(), 0);
     if (mapping == MAP_FAILED && errno == ENOMEM) ThrowTooLarge(file, size_);
     if (mapping == MAP_FAILED) ThrowCannotRead(file, errno);
     madvise(mapping, size_, MADV_SEQUENTIAL);
@@ -71,7 +58,7 @@ MappedFile::MappedFile(const std::string& file) {
   constexpr size_t kChunk = 1u << 20;
   for (;;) {
     contents_.resize(size_ + kChunk);
-    const ssize_t count = read(descriptor.get(), contents_.data() + size_, kChunk);
+    const ssize_t count = read(descriptor.number(), contents_.data() + size_, kChunk);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) ThrowCannotRead(file, errno);
     if (count == 0) break;

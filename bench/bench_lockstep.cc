@@ -4,7 +4,6 @@
 //   bench_lockstep [TICKS]
 #include <sched.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/maths/spread.h"
 #include "bench/child_process.h"
 #include "bus/seal/authenticator.h"
 #include "bus/udpm/open_udpm_bus.h"
@@ -140,11 +140,6 @@ double StackTicksPerSecond(int64_t ticks, const std::string& config_file, bool w
   return static_cast<double>(ticks) / (1e-6 * static_cast<double>(ended - started));
 }
 
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 void Compare(int64_t ticks, const std::string& config_file, bool one_core) {
   constexpr int kRounds = 5;
   cpu_set_t before;
@@ -163,8 +158,9 @@ void Compare(int64_t ticks, const std::string& config_file, bool one_core) {
   }
   sched_setaffinity(0, sizeof before, &before);
   std::printf("%-34s %10.0f %10.0f %8.2f %10.0f %8.2f\n",
-              one_core ? "three processes on one core" : "three processes", Median(bare), Median(stack),
-              Median(stack) / Median(bare), Median(keyed), Median(keyed) / Median(stack));
+              one_core ? "three processes on one core" : "three processes", maths::Median(bare),
+              maths::Median(stack), maths::Median(stack) / maths::Median(bare), maths::Median(keyed),
+              maths::Median(keyed) / maths::Median(stack));
 }
 
 }  // namespace

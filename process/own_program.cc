@@ -31,9 +31,9 @@ std::string Lines(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string ProgramOnPath(const std::string& name) {
+std::string ProgramOnPath(const std::string& name, const char* otherwise) {
   const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
+  std::istringstream folders(path != nullptr ? path : otherwise);
   for (std::string folder; std::getline(folders, folder, ':');) {
     const fs::path found = fs::path(folder.empty() ? "." : folder) / name;
     if (IsProgram(found)) return fs::absolute(found).string();

@@ -31,8 +31,9 @@ struct OwnTask {
 std::vector<std::string> OwnEnvironment(const settings::StackConfig& config, const OwnTask& task,
                                         const std::string& programs_folder);
 
-// The path of the program with that name on PATH; empty when there is none.
-std::string ProgramOnPath(const std::string& name);
+// The path of the program with that name on PATH, or where that is not set in the folders of `otherwise`;
+// empty when there is none.
+std::string ProgramOnPath(const std::string& name, const char* otherwise = "");
 
 // The folder of the running program.
 std::string OwnFolder();

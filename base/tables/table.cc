@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 
 #include "base/file_kind.h"
@@ -12,14 +11,6 @@
 
 namespace hydro::tables {
 namespace {
-
-// ".csv" for "Run.CSV".
-std::string EndingOf(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
 
 constexpr char kATable[] = "a table (CSV, or MAT named .mat)";
 

@@ -11,14 +11,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 
+#include "base/descriptor.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
 #include "batch/store/small_file.h"
+#include "process/own_program.h"
 #include "process/process_end.h"
 #include "process/spawn.h"
 
@@ -63,59 +63,7 @@ std::string Replaced(const std::string& text, const std::vector<std::string>& ke
   return result;
 }
 
-}  // namespace
-
-std::vector<std::string> CaseCommand(const Step& step, const std::vector<std::string>& keys,
-                                     const std::vector<Value>& values, const CasePlace& place) {
-  std::vector<std::string> argv;
-  for (const std::string& text : step.argv) argv.push_back(Replaced(text, keys, values, place));
-  return argv;
-}
-
-std::string ProgramPath(const std::string& name) {
-  if (name.find('/') != std::string::npos) return name;
-  std::error_code failed;
-  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", failed).parent_path();
-  if (!failed && access((own / name).c_str(), X_OK) == 0) return own / name;
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string candidate = (folder.empty() ? "." : folder) + "/" + name;
-    if (access(candidate.c_str(), X_OK) == 0 && !std::filesystem::is_directory(candidate, failed))
-      return std::filesystem::absolute(candidate);
-  }
-  throw InputError("step.run: found " + Quoted(name) +
-                   ", allowed a program beside hydro-batch, in PATH, or with its path");
-}
-
-void CheckCommands(const Study& study) {
-  for (const Step& step : study.steps) {
-    try {
-      const std::string program = CaseCommand(step, study.Keys(), study.Values(0), {}).front();
-      if (program == step.argv.front()) ProgramPath(program);
-    } catch (const InputError& error) {
-      throw InputError(step.place + ": " + error.what());
-    }
-  }
-}
-
-namespace {
-
 using Clock = std::chrono::steady_clock;
-
-class OwnedDescriptor {
- public:
-  explicit OwnedDescriptor(int number) : number_(number) {}
-  ~OwnedDescriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  OwnedDescriptor(const OwnedDescriptor&) = delete;
-  OwnedDescriptor& operator=(const OwnedDescriptor&) = delete;
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 int OpenOutput(const std::string& path) {
   const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -175,6 +123,34 @@ void EndGroup(const Child& child) {
 
 }  // namespace
 
+std::vector<std::string> CaseCommand(const Step& step, const std::vector<std::string>& keys,
+                                     const std::vector<Value>& values, const CasePlace& place) {
+  std::vector<std::string> argv;
+  for (const std::string& text : step.argv) argv.push_back(Replaced(text, keys, values, place));
+  return argv;
+}
+
+std::string ProgramPath(const std::string& name) {
+  if (name.find('/') != std::string::npos) return name;
+  std::error_code failed;
+  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", failed).parent_path();
+  if (!failed && access((own / name).c_str(), X_OK) == 0) return own / name;
+  if (std::string found = process::ProgramOnPath(name, "/usr/bin:/bin"); !found.empty()) return found;
+  throw InputError("step.run: found " + Quoted(name) +
+                   ", allowed a program beside hydro-batch, in PATH, or with its path");
+}
+
+void CheckCommands(const Study& study) {
+  for (const Step& step : study.steps) {
+    try {
+      const std::string program = CaseCommand(step, study.Keys(), study.Values(0), {}).front();
+      if (program == step.argv.front()) ProgramPath(program);
+    } catch (const InputError& error) {
+      throw InputError(step.place + ": " + error.what());
+    }
+  }
+}
+
 StopBell::StopBell() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (descriptor_ < 0) throw std::runtime_error(std::string("no event descriptor: ") + std::strerror(errno));
 }
@@ -189,12 +165,12 @@ bool StopBell::RingsWithin(std::chrono::milliseconds time) const {
 ChildResult RunChild(const ChildRequest& request, const StopBell& bell) {
   process::Spawned spawned;
   {
-    const OwnedDescriptor out(OpenOutput(request.out)), err(OpenOutput(request.err));
+    const Descriptor out(OpenOutput(request.out)), err(OpenOutput(request.err));
     ReserveLastWords(err.number(), request.err);
     spawned = process::Spawn(
         {.argv = request.argv, .folder = request.folder, .out = out.number(), .err = err.number()});
   }
-  const OwnedDescriptor descriptor(static_cast<int>(syscall(SYS_pidfd_open, spawned.pid, 0)));
+  const Descriptor descriptor(static_cast<int>(syscall(SYS_pidfd_open, spawned.pid, 0)));
   const Child child{spawned.pid, descriptor.number()};
   ChildResult result;
   if (!WaitFor(child, bell.descriptor(), request.deadline)) {

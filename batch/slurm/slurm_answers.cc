@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "base/number_text.h"
+#include "base/word_list.h"
 
 namespace hydro::batch {
 namespace {
@@ -18,12 +19,6 @@ std::vector<std::string> Split(const std::string& text, char between) {
   std::istringstream in(text);
   for (std::string part; std::getline(in, part, between);) parts.push_back(part);
   return parts;
-}
-
-std::string Trimmed(const std::string& text) {
-  const size_t first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
 std::optional<double> SchedulerParameter(const std::string& parameters, const std::string& name) {

@@ -11,15 +11,15 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "base/descriptor.h"
 #include "base/input_error.h"
 #include "base/text_file.h"
 #include "batch/slurm/slurm_answers.h"
+#include "process/own_program.h"
 #include "process/spawn.h"
 
 namespace hydro::batch {
@@ -27,21 +27,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-class OpenFile {
- public:
-  explicit OpenFile(int number) : number_(number) {
-    if (number_ < 0) throw std::runtime_error(std::string("no descriptor: ") + std::strerror(errno));
-  }
-  ~OpenFile() { close(number_); }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int number() const { return number_; }
+Descriptor Opened(int number) {
+  if (number < 0) throw std::runtime_error(std::string("no descriptor: ") + std::strerror(errno));
+  return Descriptor(number);
+}
 
- private:
-  int number_;
-};
-
-std::string ContentsOf(const OpenFile& file) {
+std::string ContentsOf(const Descriptor& file) {
   std::string text;
   std::array<char, 65536> part;
   for (ssize_t size;
@@ -50,46 +41,13 @@ std::string ContentsOf(const OpenFile& file) {
   return text;
 }
 
-bool EndsWithin(const OpenFile& child, Clock::time_point deadline, const std::function<bool()>& stop) {
+bool EndsWithin(const Descriptor& child, Clock::time_point deadline, const std::function<bool()>& stop) {
   while (!stop() && Clock::now() < deadline) {
     pollfd wait{child.number(), POLLIN, 0};
     if (poll(&wait, 1, 100) > 0) return true;
   }
   return false;
 }
-
-}  // namespace
-
-std::string ProgramInPath(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    std::string program = (folder.empty() ? "." : folder) + "/" + name;
-    if (access(program.c_str(), X_OK) == 0) return program;
-  }
-  return "";
-}
-
-Answer AskCommand(const std::vector<std::string>& argv, std::chrono::seconds limit,
-                  const std::function<bool()>& stop) {
-  // Uses files in memory rather than pipes, which would have to be emptied while the command runs.
-  const OpenFile out(memfd_create("out", MFD_CLOEXEC)), err(memfd_create("err", MFD_CLOEXEC));
-  const process::Spawned spawned = process::Spawn({.argv = argv, .out = out.number(), .err = err.number()});
-  const OpenFile child(static_cast<int>(syscall(SYS_pidfd_open, spawned.pid, 0)));
-  Answer answer;
-  answer.ended_itself = EndsWithin(child, Clock::now() + limit, stop);
-  if (!answer.ended_itself) kill(-spawned.pid, SIGKILL);
-  int status = 0;
-  while (waitpid(spawned.pid, &status, 0) < 0 && errno == EINTR) {
-  }
-  answer.ended_itself = answer.ended_itself && WIFEXITED(status);
-  if (answer.ended_itself) answer.exit_code = WEXITSTATUS(status);
-  answer.out = ContentsOf(out);
-  answer.err = ContentsOf(err);
-  return answer;
-}
-
-namespace {
 
 // A busy slurmctld answers late. sbatch even retries for minutes when slurmctld has as many jobs as it may
 // have.
@@ -107,7 +65,7 @@ std::string LastLineOf(const std::string& text) {
 }
 
 Answer Ask(std::vector<std::string> argv, const std::function<bool()>& stop) {
-  const std::string program = ProgramInPath(argv[0]);
+  const std::string program = process::ProgramOnPath(argv[0]);
   if (program.empty()) throw ClusterError("found no " + argv[0] + " on this machine", true);
   argv[0] = program;
   return AskCommand(argv, kPatience, stop);
@@ -135,8 +93,28 @@ void CheckCancelled(const Answer& answer) {
 
 }  // namespace
 
+Answer AskCommand(const std::vector<std::string>& argv, std::chrono::seconds limit,
+                  const std::function<bool()>& stop) {
+  // Uses files in memory rather than pipes, which would have to be emptied while the command runs.
+  const Descriptor out = Opened(memfd_create("out", MFD_CLOEXEC)),
+                   err = Opened(memfd_create("err", MFD_CLOEXEC));
+  const process::Spawned spawned = process::Spawn({.argv = argv, .out = out.number(), .err = err.number()});
+  const Descriptor child = Opened(static_cast<int>(syscall(SYS_pidfd_open, spawned.pid, 0)));
+  Answer answer;
+  answer.ended_itself = EndsWithin(child, Clock::now() + limit, stop);
+  if (!answer.ended_itself) kill(-spawned.pid, SIGKILL);
+  int status = 0;
+  while (waitpid(spawned.pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  answer.ended_itself = answer.ended_itself && WIFEXITED(status);
+  if (answer.ended_itself) answer.exit_code = WEXITSTATUS(status);
+  answer.out = ContentsOf(out);
+  answer.err = ContentsOf(err);
+  return answer;
+}
+
 SlurmCluster::SlurmCluster(std::function<bool()> stop) : stop_(std::move(stop)) {
-  if (!ProgramInPath("sbatch").empty()) return;
+  if (!process::ProgramOnPath("sbatch").empty()) return;
   throw InputError(
       "--slurm: found no sbatch on this machine, allowed where Slurm's commands are (Debian: slurm-client)");
 }

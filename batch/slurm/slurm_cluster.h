@@ -18,9 +18,6 @@ struct Answer {
   std::string out, err;
 };
 
-// The path of a program in $PATH; empty when there is none.
-std::string ProgramInPath(const std::string& name);
-
 // Runs a command. `argv[0]` is the path of the program. The command is ended after `limit`, or when `stop` is
 // true. Throws process::StartError, std::runtime_error.
 Answer AskCommand(const std::vector<std::string>& argv, std::chrono::seconds limit,

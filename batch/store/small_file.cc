@@ -7,30 +7,14 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/descriptor.h"
+
 namespace hydro::batch {
 namespace {
 
-class Descriptor {
- public:
-  Descriptor(const std::string& path, int flags)
-      : number_(open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0666)) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int number() const { return number_; }
-  // A shared file system may report only here that its disk is full.
-  bool Close() {
-    const int result = close(number_);
-    number_ = -1;
-    return result == 0;
-  }
-
- private:
-  int number_;
-};
+int OpenSmallFile(const std::string& path, int flags) {
+  return open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0666);
+}
 
 void WriteAll(int descriptor, const char* data, size_t size, const std::string& path) {
   while (size > 0) {
@@ -45,7 +29,7 @@ void WriteAll(int descriptor, const char* data, size_t size, const std::string& 
 // Calls use(data, size) with one part after another; returns false when the file cannot be read.
 template <class Use>
 bool ReadParts(const std::string& path, const Use& use) {
-  const Descriptor in(path, O_RDONLY);
+  const Descriptor in(OpenSmallFile(path, O_RDONLY));
   if (in.number() < 0) return false;
   std::array<char, 65536> part;
   for (;;) {
@@ -60,14 +44,14 @@ bool ReadParts(const std::string& path, const Use& use) {
 }  // namespace
 
 void WriteSmallFile(const std::string& path, const std::string& text) {
-  Descriptor out(path, O_WRONLY | O_CREAT | O_TRUNC);
+  Descriptor out(OpenSmallFile(path, O_WRONLY | O_CREAT | O_TRUNC));
   if (out.number() < 0) ThrowCannotWrite(path);
   WriteAll(out.number(), text.data(), text.size(), path);
   if (!out.Close()) ThrowCannotWrite(path);
 }
 
 void CopySmallFile(const std::string& from, const std::string& to) {
-  Descriptor out(to, O_WRONLY | O_CREAT | O_TRUNC);
+  Descriptor out(OpenSmallFile(to, O_WRONLY | O_CREAT | O_TRUNC));
   if (out.number() < 0) ThrowCannotWrite(to);
   const bool read_all =
       ReadParts(from, [&](const char* data, size_t size) { WriteAll(out.number(), data, size, to); });

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bus/clock.h"
 #include "bus/session.h"
 
 namespace hydro::bus {
@@ -18,11 +19,6 @@ constexpr auto kQuestionPeriod = 10ms;
 // oldest.
 constexpr size_t kMostAdmitted = 65536;
 constexpr size_t kMostWaiting = 64;
-
-int64_t NowUtime() {
-  using namespace std::chrono;
-  return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 
@@ -95,7 +91,7 @@ bool Authenticator::WaitsTooLong(int64_t session, TimePoint now) {
 
 introduction_t Authenticator::Introduction(int64_t answers) const {
   introduction_t introduction{};
-  introduction.utime = NowUtime();
+  introduction.utime = WallClock().Utime();
   introduction.session = session_;
   introduction.answers = answers;
   introduction.known = admitted_.contains(answers);

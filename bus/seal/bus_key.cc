@@ -12,6 +12,7 @@
 #include <string>
 
 #include "base/bytes.h"
+#include "base/descriptor.h"
 #include "base/input_error.h"
 #include "base/new_file.h"
 
@@ -27,68 +28,8 @@ constexpr std::string_view kPurpose =
 
 const uint8_t* Bytes(std::string_view text) { return reinterpret_cast<const uint8_t*>(text.data()); }
 
-}  // namespace
-
-std::array<uint8_t, kSealTagSize> SealTag(const std::array<uint8_t, kBusKeySize>& key,
-                                          std::string_view channel, int64_t session, uint64_t counter,
-                                          const void* message, int size) {
-  // The lengths come first, so that no two different inputs give the same bytes.
-  std::array<uint8_t, 32> numbers{};
-  StoreBigEndian64(channel.size(), numbers.data());
-  StoreBigEndian64(static_cast<uint64_t>(size), numbers.data() + 8);
-  StoreBigEndian64(static_cast<uint64_t>(session), numbers.data() + 16);
-  StoreBigEndian64(counter, numbers.data() + 24);
-
-  std::array<uint8_t, kSealTagSize> tag{};
-  crypto_generichash_state state;
-  crypto_generichash_init(&state, key.data(), key.size(), tag.size());
-  crypto_generichash_update(&state, Bytes(kPurpose), kPurpose.size());
-  crypto_generichash_update(&state, numbers.data(), numbers.size());
-  crypto_generichash_update(&state, Bytes(channel), channel.size());
-  crypto_generichash_update(&state, static_cast<const uint8_t*>(message), static_cast<size_t>(size));
-  crypto_generichash_final(&state, tag.data(), tag.size());
-  return tag;
-}
-
-void WriteSeal(const Seal& seal, uint8_t* out) {
-  std::memcpy(out, kSealMagic.data(), kSealMagic.size());
-  StoreBigEndian64(static_cast<uint64_t>(seal.session), out + 8);
-  StoreBigEndian64(seal.counter, out + 16);
-  std::memcpy(out + 24, seal.tag.data(), seal.tag.size());
-}
-
-bool ReadSeal(const void* data, int size, Seal* seal) {
-  const int message_size = SizeWithoutSeal(data, size);
-  if (message_size == size) return false;
-  const uint8_t* const in = static_cast<const uint8_t*>(data) + message_size;
-  seal->session = static_cast<int64_t>(LoadBigEndian64(in + 8));
-  seal->counter = LoadBigEndian64(in + 16);
-  std::memcpy(seal->tag.data(), in + 24, seal->tag.size());
-  return true;
-}
-
-bool SameTag(const std::array<uint8_t, kSealTagSize>& a, const std::array<uint8_t, kSealTagSize>& b) {
-  return sodium_memcmp(a.data(), b.data(), a.size()) == 0;
-}
-
-namespace {
-
 constexpr size_t kLongest = 200;  // bytes of a key file, including white space
 constexpr mode_t kOthers = S_IRWXG | S_IRWXO;
-
-class File {
- public:
-  explicit File(int fd) : fd_(fd) {}
-  ~File() {
-    if (fd_ >= 0) close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 // Text that holds a key and is wiped on destruction.
 class SecretText {
@@ -140,6 +81,48 @@ size_t ReadAll(const std::string& file, int fd, char* text) {
 
 }  // namespace
 
+std::array<uint8_t, kSealTagSize> SealTag(const std::array<uint8_t, kBusKeySize>& key,
+                                          std::string_view channel, int64_t session, uint64_t counter,
+                                          const void* message, int size) {
+  // The lengths come first, so that no two different inputs give the same bytes.
+  std::array<uint8_t, 32> numbers{};
+  StoreBigEndian64(channel.size(), numbers.data());
+  StoreBigEndian64(static_cast<uint64_t>(size), numbers.data() + 8);
+  StoreBigEndian64(static_cast<uint64_t>(session), numbers.data() + 16);
+  StoreBigEndian64(counter, numbers.data() + 24);
+
+  std::array<uint8_t, kSealTagSize> tag{};
+  crypto_generichash_state state;
+  crypto_generichash_init(&state, key.data(), key.size(), tag.size());
+  crypto_generichash_update(&state, Bytes(kPurpose), kPurpose.size());
+  crypto_generichash_update(&state, numbers.data(), numbers.size());
+  crypto_generichash_update(&state, Bytes(channel), channel.size());
+  crypto_generichash_update(&state, static_cast<const uint8_t*>(message), static_cast<size_t>(size));
+  crypto_generichash_final(&state, tag.data(), tag.size());
+  return tag;
+}
+
+void WriteSeal(const Seal& seal, uint8_t* out) {
+  std::memcpy(out, kSealMagic.data(), kSealMagic.size());
+  StoreBigEndian64(static_cast<uint64_t>(seal.session), out + 8);
+  StoreBigEndian64(seal.counter, out + 16);
+  std::memcpy(out + 24, seal.tag.data(), seal.tag.size());
+}
+
+bool ReadSeal(const void* data, int size, Seal* seal) {
+  const int message_size = SizeWithoutSeal(data, size);
+  if (message_size == size) return false;
+  const uint8_t* const in = static_cast<const uint8_t*>(data) + message_size;
+  seal->session = static_cast<int64_t>(LoadBigEndian64(in + 8));
+  seal->counter = LoadBigEndian64(in + 16);
+  std::memcpy(seal->tag.data(), in + 24, seal->tag.size());
+  return true;
+}
+
+bool SameTag(const std::array<uint8_t, kSealTagSize>& a, const std::array<uint8_t, kSealTagSize>& b) {
+  return sodium_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
 BusKey KeyForPort(const BusKey& key, int port) {
   StartSodium();
   const std::string context = "hydro bus key, port " + std::to_string(port);
@@ -155,8 +138,8 @@ BusKey::~BusKey() { sodium_memzero(bytes_.data(), bytes_.size()); }
 
 BusKey ReadBusKey(const std::string& file) {
   StartSodium();
-  const File opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (opened.fd() < 0) {
+  const Descriptor opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (opened.number() < 0) {
     // Replacing an existing key would lock the other hosts out.
     RefuseErrno(file, "cannot be read",
                 errno == ENOENT ? "`hydro-launch CONFIG --make-key` makes one"
@@ -164,10 +147,10 @@ BusKey ReadBusKey(const std::string& file) {
                     ? "whoever starts the stack must own it (chown), in a folder that may be entered"
                     : "a file with a key is needed");
   }
-  CheckPermissions(file, opened.fd());
+  CheckPermissions(file, opened.number());
   SecretText secret;
   const char* text = secret.data();
-  size_t size = ReadAll(file, opened.fd(), secret.data());
+  size_t size = ReadAll(file, opened.number(), secret.data());
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
   while (size > 0 && blank(text[size - 1])) --size;
   while (size > 0 && blank(*text)) ++text, --size;
@@ -207,14 +190,14 @@ void MakeBusKeyFile(const std::string& file) {
   constexpr size_t kSize = 2 * kBusKeySize + 1;
   text.data()[kSize - 1] = '\n';
 
-  const File made(open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
-  if (made.fd() < 0) {
+  const Descriptor made(open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
+  if (made.number() < 0) {
     RefuseErrno(file, "cannot be made",
                 errno == EEXIST ? "remove it first if it is to be replaced"
                                 : "a name in a folder that can be written is needed");
   }
   errno = ENOSPC;  // the reason of a short write
-  if (write(made.fd(), text.data(), kSize) != static_cast<ssize_t>(kSize) || fsync(made.fd()) != 0) {
+  if (write(made.number(), text.data(), kSize) != static_cast<ssize_t>(kSize) || fsync(made.number()) != 0) {
     const std::string why = std::strerror(errno);
     unlink(file.c_str());
     throw WriteError(file + ": bus.key_file: cannot be written: " + why + "; space for it is needed");

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/descriptor.h"
 #include "bus/bus.h"
 #include "bus/udpm/udpm_url.h"
 
@@ -23,20 +24,6 @@ namespace {
 constexpr const char* kCure =
     "on one machine `ip route add 224.0.0.0/4 dev lo` (as root) mends it; see docs/troubleshooting.md";
 constexpr const char* kFirewallCure = "let the firewall pass 224.0.0.0/4; see docs/troubleshooting.md";
-
-class Socket {
- public:
-  explicit Socket(int fd) : fd_(fd) {}
-  ~Socket() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 [[noreturn]] void Fail(const UdpmUrl& url, const std::string& what) {
   UdpmUrl shown = url;
@@ -65,44 +52,44 @@ std::vector<uint8_t> MakeProbe() {
 }
 
 // Sets the sender up to send to the group, and to be heard on this machine too.
-void Connect(const Socket& sender, const UdpmUrl& url, const sockaddr_in& group) {
-  if (connect(sender.fd(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
+void Connect(const Descriptor& sender, const UdpmUrl& url, const sockaddr_in& group) {
+  if (connect(sender.number(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
     FailErrno(url, "no route to the group", kCure);
   }
-  SetProbeOption(sender.fd(), IPPROTO_IP, IP_MULTICAST_TTL, static_cast<unsigned char>(url.ttl));
-  SetProbeOption(sender.fd(), IPPROTO_IP, IP_MULTICAST_LOOP, static_cast<unsigned char>(1));
+  SetProbeOption(sender.number(), IPPROTO_IP, IP_MULTICAST_TTL, static_cast<unsigned char>(url.ttl));
+  SetProbeOption(sender.number(), IPPROTO_IP, IP_MULTICAST_LOOP, static_cast<unsigned char>(1));
 }
 
 // Joins the group. Returns the size of the receive buffer that the kernel grants.
-int Listen(const Socket& receiver, const UdpmUrl& url, const sockaddr_in& group) {
-  SetProbeOption(receiver.fd(), SOL_SOCKET, SO_REUSEADDR, 1);
-  if (url.recv_buf_size > 0) SetProbeOption(receiver.fd(), SOL_SOCKET, SO_RCVBUF, url.recv_buf_size);
+int Listen(const Descriptor& receiver, const UdpmUrl& url, const sockaddr_in& group) {
+  SetProbeOption(receiver.number(), SOL_SOCKET, SO_REUSEADDR, 1);
+  if (url.recv_buf_size > 0) SetProbeOption(receiver.number(), SOL_SOCKET, SO_RCVBUF, url.recv_buf_size);
   int receive_buffer = 0;
   socklen_t length = sizeof receive_buffer;
-  getsockopt(receiver.fd(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, &length);
-  if (bind(receiver.fd(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
+  getsockopt(receiver.number(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, &length);
+  if (bind(receiver.number(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
     FailErrno(url, "cannot listen on the port", "another program may hold it: choose another port");
   }
   ip_mreq membership{};
   membership.imr_multiaddr = group.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
-  if (setsockopt(receiver.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0) {
+  if (setsockopt(receiver.number(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0) {
     FailErrno(url, "cannot join the group", kCure);
   }
   return receive_buffer;
 }
 
 // Waits until `deadline` for a packet that is the probe. Returns false when none came.
-bool Receives(const Socket& receiver, const std::vector<uint8_t>& probe,
+bool Receives(const Descriptor& receiver, const std::vector<uint8_t>& probe,
               std::chrono::steady_clock::time_point deadline) {
   std::vector<uint8_t> packet(probe.size() + 1);
   while (true) {
     const auto now = std::chrono::steady_clock::now();
     if (now >= deadline) return false;
-    pollfd waiting{receiver.fd(), POLLIN, 0};
+    pollfd waiting{receiver.number(), POLLIN, 0};
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - now);
     if (poll(&waiting, 1, static_cast<int>(left.count())) <= 0) continue;
-    const ssize_t size = recv(receiver.fd(), packet.data(), packet.size(), MSG_DONTWAIT);
+    const ssize_t size = recv(receiver.number(), packet.data(), packet.size(), MSG_DONTWAIT);
     if (size == static_cast<ssize_t>(probe.size()) &&
         std::memcmp(packet.data(), probe.data(), probe.size()) == 0) {
       return true;
@@ -113,9 +100,9 @@ bool Receives(const Socket& receiver, const std::vector<uint8_t>& probe,
 }  // namespace
 
 int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
-  const Socket sender(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  const Socket receiver(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  if (sender.fd() < 0 || receiver.fd() < 0) FailErrno(url, "no socket", "see `ulimit -n`");
+  const Descriptor sender(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const Descriptor receiver(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (sender.number() < 0 || receiver.number() < 0) FailErrno(url, "no socket", "see `ulimit -n`");
   sockaddr_in group{};
   group.sin_family = AF_INET;
   group.sin_port = htons(url.port);
@@ -127,7 +114,7 @@ int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   while (true) {
     // The probe is sent repeatedly, because a busy machine may lose a packet.
-    if (send(sender.fd(), probe.data(), probe.size(), 0) < 0) {
+    if (send(sender.number(), probe.data(), probe.size(), 0) < 0) {
       FailErrno(url, "cannot send to the group", kFirewallCure);
     }
     const auto next_try = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);

@@ -91,16 +91,14 @@ ReservedPort::ReservedPort() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC
   socklen_t size = sizeof address;
   auto* const generic = reinterpret_cast<sockaddr*>(&address);
   const int yes = 1, no = 0;  // it receives nothing itself
-  if (socket_ < 0 || bind(socket_, generic, size) != 0 || getsockname(socket_, generic, &size) != 0 ||
-      setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no) != 0 ||
-      setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) {
-    if (socket_ >= 0) close(socket_);
+  if (socket_.number() < 0 || bind(socket_.number(), generic, size) != 0 ||
+      getsockname(socket_.number(), generic, &size) != 0 ||
+      setsockopt(socket_.number(), IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no) != 0 ||
+      setsockopt(socket_.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) {
     throw BusError("no free UDP port on this machine");
   }
   number_ = ntohs(address.sin_port);
 }
-
-ReservedPort::~ReservedPort() { close(socket_); }
 
 std::string ReservedPort::Url() const { return "udpm://239.255.76.67:" + std::to_string(number_) + "?ttl=0"; }
 

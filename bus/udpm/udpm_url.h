@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "base/descriptor.h"
+
 namespace hydro::bus {
 
 struct UdpmUrl {
@@ -26,14 +28,11 @@ UdpmUrl ParseUdpmUrl(const std::string& text);
 class ReservedPort {
  public:
   ReservedPort();  // throws BusError when no port is free
-  ~ReservedPort();
-  ReservedPort(const ReservedPort&) = delete;
-  ReservedPort& operator=(const ReservedPort&) = delete;
 
   std::string Url() const;  // the URL of a bus on this machine alone (ttl 0) at that port
 
  private:
-  int socket_;
+  Descriptor socket_;
   int number_ = 0;
 };
 

@@ -1,10 +1,9 @@
 #include "runs/exports/write_export.h"
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <iterator>
 
+#include "base/file_kind.h"
 #include "base/input_error.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
@@ -22,13 +21,6 @@ constexpr struct {
                 {Format::kMat73, "mat73", {".mat"}},
                 {Format::kHdf5, "hdf5", {".h5", ".hdf5"}},
                 {Format::kMcap, "mcap", {".mcap"}}};
-
-std::string EndingOf(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
 
 // The first format with that ending.
 std::optional<Format> FormatOf(const std::string& ending) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 
 namespace hydro::runs {
@@ -12,20 +13,13 @@ namespace {
 
 constexpr double kDay = 86400, kHour = 3600;  // s
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // The usual time between two rows; 0 where no row is later than the one before.
 double UsualStep(const std::vector<double>& times) {
   std::vector<double> steps;
   for (size_t i = 1; i < times.size(); ++i) {
     if (times[i] > times[i - 1]) steps.push_back(times[i] - times[i - 1]);
   }
-  return Median(std::move(steps));
+  return steps.empty() ? 0 : maths::Median(std::move(steps));
 }
 
 std::string RowName(const tables::Table& table, size_t row) {
@@ -196,7 +190,7 @@ std::optional<Bursts> FindBursts(const std::vector<double>& times) {
     begin = row;
   }
   if (rows.size() < kFewest) return std::nullopt;
-  const Bursts bursts{rows.size(), Median(rows), Median(durations), Median(periods)};
+  const Bursts bursts{rows.size(), maths::Median(rows), maths::Median(durations), maths::Median(periods)};
   const auto alike = std::count_if(periods.begin(), periods.end(), [&](double period) {
     return std::abs(period - bursts.period) < 0.25 * bursts.period;
   });

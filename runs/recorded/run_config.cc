@@ -6,6 +6,7 @@
 
 #include "base/input_error.h"
 #include "base/integers.h"
+#include "base/maths/spread.h"
 #include "settings/model_file.h"
 #include "settings/toml/toml_document.h"
 #include "settings/toml/toml_edit.h"
@@ -32,12 +33,6 @@ bool IsOfALimb(const RunMessages& messages) {
   const auto& descriptions = messages.Of<run_description_t>();
   return std::any_of(descriptions.begin(), descriptions.end(),
                      [](const run_description_t& run) { return run.program == kLimb; });
-}
-
-int64_t Median(std::vector<int64_t> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -104,7 +99,7 @@ int64_t SampleTicks(const RunMessages& messages) {
     const int64_t skipped = SaturatingSum(1, std::max<int64_t>(0, states[i].skipped_ticks));
     left_out.push_back(SaturatingDifference(steps.back(), skipped));
   }
-  return steps.empty() || Median(left_out) <= 0 ? 1 : Median(steps);
+  return steps.empty() || maths::Median(left_out) <= 0 ? 1 : maths::Median(steps);
 }
 
 std::string DescribeSampling(int64_t sample_ticks) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "model/terms/model_error.h"
 #include "model/terms/state.h"
@@ -20,6 +21,12 @@ constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 // A second difference of independent samples has sqrt(1 + 4 + 1) times their deviation; the median of a
 // normal distribution's absolute values is 0.67449 times its deviation.
 constexpr double kOfNormal = 0.6744897501960817 * 2.449489742783178;
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr size_t kSlopeSamples = 8;  // samples for the rate of an angle where no speed is measured
+constexpr double kTolerance = 1e-6;  // far below any noise, and five times as fast as the plant's own 1e-8
+
+double& At(Ghost::Row& row, GhostColumn column) { return row[static_cast<size_t>(column)]; }
 
 }  // namespace
 
@@ -43,21 +50,9 @@ void NoiseEstimate::Add(double value) {
 void NoiseEstimate::Update() {
   fresh_ = 0;
   if (differences_.size() < kFirst) return;
-  std::vector<double> sorted = differences_;
-  const auto middle = sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  sigma_ = *middle > 0 ? *middle / kOfNormal : kNotKnown;
+  const double middle = maths::Median(differences_);
+  sigma_ = middle > 0 ? middle / kOfNormal : kNotKnown;
 }
-
-namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr size_t kSlopeSamples = 8;  // samples for the rate of an angle where no speed is measured
-constexpr double kTolerance = 1e-6;  // far below any noise, and five times as fast as the plant's own 1e-8
-
-double& At(Ghost::Row& row, GhostColumn column) { return row[static_cast<size_t>(column)]; }
-
-}  // namespace
 
 Ghost::Ghost(std::shared_ptr<const settings::StackConfig> config, double resync_s)
     : config_(std::move(config)), resync_s_(resync_s) {
