@@ -7,6 +7,7 @@
 
 #include "bus/bus.h"
 #include "bus/clock.h"
+#include "process/app.h"
 #include "settings/command_line.h"
 #include "settings/stack_config.h"
 
@@ -25,5 +26,21 @@ using ConfigLoader =
 // work failed).
 int RunProcess(const std::string& program, const settings::CommonOptions& options, const ProcessBody& body,
                const ConfigLoader& load = settings::LoadStackConfig);
+
+// main() of a program whose whole work is such an App.
+template <class ItsApp>
+int AppMain(const std::string& program, const std::string& description, int argc, char** argv) {
+  settings::CommandLine command_line(program, description);
+  command_line.AddExamples({program + " config/demo.toml        beside a plant; hydro-launch starts all"},
+                           "docs/launch.md");
+  settings::CommonOptions options;
+  command_line.AddCommon(&options);
+  if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
+  return RunProcess(program, options,
+                    [](bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config) {
+                      ItsApp app(bus, clock, config);
+                      return RunApp(bus, clock, app);
+                    });
+}
 
 }  // namespace hydro::process

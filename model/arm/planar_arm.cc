@@ -72,6 +72,17 @@ void NewtonEuler(int links, const ArmLink* link, double gravity, const Motion& m
   }
 }
 
+// The last link with the payload as one body.
+void Load(ArmLink* link, double payload) {
+  const double mass = link->mass + payload;
+  const double centre = (link->mass * link->centre + payload * link->length) / mass;
+  const double from_centre = link->centre - centre;
+  const double from_tip = link->length - centre;
+  link->inertia += link->mass * from_centre * from_centre + payload * from_tip * from_tip;
+  link->mass = mass;
+  link->centre = centre;
+}
+
 }  // namespace
 
 bool Factor(int n, std::span<double> matrix) {
@@ -116,21 +127,6 @@ void InverseDiagonal(int n, std::span<const double> factors, std::span<double> d
     diagonal[j] = sum;
   }
 }
-
-namespace {
-
-// The last link with the payload as one body.
-void Load(ArmLink* link, double payload) {
-  const double mass = link->mass + payload;
-  const double centre = (link->mass * link->centre + payload * link->length) / mass;
-  const double from_centre = link->centre - centre;
-  const double from_tip = link->length - centre;
-  link->inertia += link->mass * from_centre * from_centre + payload * from_tip * from_tip;
-  link->mass = mass;
-  link->centre = centre;
-}
-
-}  // namespace
 
 PlanarArm::PlanarArm(const ArmDescription& description)
     : links_(description.links), gravity_(description.gravity) {
@@ -181,12 +177,8 @@ void PlanarArm::JointTorqueRates(const ArmPose& pose, std::span<const double> sp
 }
 
 void PlanarArm::Bias(const ArmPose& pose, std::span<const double> speeds, std::span<double> torques) const {
-  NewtonEuler<double>(
-      links(), links_.data(), gravity_,
-      [&](int i) {
-        return LinkMotion<double>{pose.cosine[i], pose.sine[i], speeds[i], 0};
-      },
-      [&](int i, double torque) { torques[i] = torque; });
+  constexpr double kAtRest[kMostLinks] = {};
+  JointTorques(pose, speeds, kAtRest, torques);
 }
 
 void PlanarArm::MassMatrix(const ArmPose& pose, std::span<double> matrix) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "base/number_text.h"
 #include "settings/quantity_keys.h"
@@ -19,45 +20,53 @@ struct Value {
   void (*set)(TunedValues&, double);
 };
 
+// At gives the value's place in a TunedValues.
+template <class At>
+constexpr Value Named(std::string_view name, At) {
+  return {name, [](const TunedValues& v) { return static_cast<double>(At{}(v)); },
+          [](TunedValues& v, double x) {
+            auto& place = At{}(v);
+            place = static_cast<std::remove_reference_t<decltype(place)>>(x);
+          }};
+}
+
 constexpr std::array kValues{
-    Value{"pressure.k_p", [](const TunedValues& v) { return v.pressure.gains.k_p; },
-          [](TunedValues& v, double x) { v.pressure.gains.k_p = x; }},
-    Value{"pressure.k_v", [](const TunedValues& v) { return v.pressure.gains.k_v; },
-          [](TunedValues& v, double x) { v.pressure.gains.k_v = x; }},
-    Value{"pressure.reference_feedforward",
-          [](const TunedValues& v) { return v.pressure.reference_feedforward; },
-          [](TunedValues& v, double x) { v.pressure.reference_feedforward = x; }},
-    Value{"pressure.arm_speed_ratio", [](const TunedValues& v) { return v.pressure.arm_speed_ratio; },
-          [](TunedValues& v, double x) { v.pressure.arm_speed_ratio = x; }},
-    Value{"position.c1", [](const TunedValues& v) { return v.position.c1; },
-          [](TunedValues& v, double x) { v.position.c1 = x; }},
-    Value{"position.c2", [](const TunedValues& v) { return v.position.c2; },
-          [](TunedValues& v, double x) { v.position.c2 = x; }},
-    Value{"position.derivative_on_error",
-          [](const TunedValues& v) { return v.position.derivative_on_error ? 1.0 : 0.0; },
-          [](TunedValues& v, double x) { v.position.derivative_on_error = x != 0; }},
-    Value{"position.braking", [](const TunedValues& v) { return v.braking; },
-          [](TunedValues& v, double x) { v.braking = x; }},
-    Value{"limits.pressure", [](const TunedValues& v) { return v.limits.pressure_psi; },
-          [](TunedValues& v, double x) { v.limits.pressure_psi = x; }},
-    Value{"limits.motor_speed", [](const TunedValues& v) { return v.limits.motor_speed_rad_s; },
-          [](TunedValues& v, double x) { v.limits.motor_speed_rad_s = x; }},
-    Value{"limits.arm_angle", [](const TunedValues& v) { return v.limits.arm_angle_rad; },
-          [](TunedValues& v, double x) { v.limits.arm_angle_rad = x; }},
-    Value{"limits.arm_torque", [](const TunedValues& v) { return v.limits.arm_torque_in_lbf; },
-          [](TunedValues& v, double x) { v.limits.arm_torque_in_lbf = x; }},
-    Value{"noise.p1", [](const TunedValues& v) { return v.noise.p1_psi; },
-          [](TunedValues& v, double x) { v.noise.p1_psi = x; }},
-    Value{"noise.p2", [](const TunedValues& v) { return v.noise.p2_psi; },
-          [](TunedValues& v, double x) { v.noise.p2_psi = x; }},
-    Value{"noise.motor_angle", [](const TunedValues& v) { return v.noise.motor_angle_rad; },
-          [](TunedValues& v, double x) { v.noise.motor_angle_rad = x; }},
-    Value{"noise.motor_speed", [](const TunedValues& v) { return v.noise.motor_speed_rad_s; },
-          [](TunedValues& v, double x) { v.noise.motor_speed_rad_s = x; }},
-    Value{"noise.arm_angle", [](const TunedValues& v) { return v.noise.arm_angle_rad; },
-          [](TunedValues& v, double x) { v.noise.arm_angle_rad = x; }},
-    Value{"noise.arm_speed", [](const TunedValues& v) { return v.noise.arm_speed_rad_s; },
-          [](TunedValues& v, double x) { v.noise.arm_speed_rad_s = x; }},
+    Named(
+        "pressure.k_p", [](auto& v) -> auto& { return v.pressure.gains.k_p; }),
+    Named(
+        "pressure.k_v", [](auto& v) -> auto& { return v.pressure.gains.k_v; }),
+    Named(
+        "pressure.reference_feedforward", [](auto& v) -> auto& { return v.pressure.reference_feedforward; }),
+    Named(
+        "pressure.arm_speed_ratio", [](auto& v) -> auto& { return v.pressure.arm_speed_ratio; }),
+    Named(
+        "position.c1", [](auto& v) -> auto& { return v.position.c1; }),
+    Named(
+        "position.c2", [](auto& v) -> auto& { return v.position.c2; }),
+    Named(
+        "position.derivative_on_error", [](auto& v) -> auto& { return v.position.derivative_on_error; }),
+    Named(
+        "position.braking", [](auto& v) -> auto& { return v.braking; }),
+    Named(
+        "limits.pressure", [](auto& v) -> auto& { return v.limits.pressure_psi; }),
+    Named(
+        "limits.motor_speed", [](auto& v) -> auto& { return v.limits.motor_speed_rad_s; }),
+    Named(
+        "limits.arm_angle", [](auto& v) -> auto& { return v.limits.arm_angle_rad; }),
+    Named(
+        "limits.arm_torque", [](auto& v) -> auto& { return v.limits.arm_torque_in_lbf; }),
+    Named(
+        "noise.p1", [](auto& v) -> auto& { return v.noise.p1_psi; }),
+    Named(
+        "noise.p2", [](auto& v) -> auto& { return v.noise.p2_psi; }),
+    Named(
+        "noise.motor_angle", [](auto& v) -> auto& { return v.noise.motor_angle_rad; }),
+    Named(
+        "noise.motor_speed", [](auto& v) -> auto& { return v.noise.motor_speed_rad_s; }),
+    Named(
+        "noise.arm_angle", [](auto& v) -> auto& { return v.noise.arm_angle_rad; }),
+    Named(
+        "noise.arm_speed", [](auto& v) -> auto& { return v.noise.arm_speed_rad_s; }),
 };
 
 // Also finds the name used in older logs.
