@@ -26,14 +26,6 @@ std::optional<FileIdentity> Look(const std::string& file, bool regular_only) {
   return FileIdentity{uint64_t{status.stx_dev_major} << 32 | status.stx_dev_minor, status.stx_ino, birth};
 }
 
-}  // namespace
-
-std::optional<FileIdentity> IdentityOf(const std::string& file) { return Look(file, false); }
-
-std::optional<FileIdentity> IdentityOfRegular(const std::string& file) { return Look(file, true); }
-
-namespace {
-
 std::mutex mutex;
 std::set<FileIdentity>& Read() {
   static std::set<FileIdentity> read;
@@ -41,6 +33,10 @@ std::set<FileIdentity>& Read() {
 }
 
 }  // namespace
+
+std::optional<FileIdentity> IdentityOf(const std::string& file) { return Look(file, false); }
+
+std::optional<FileIdentity> IdentityOfRegular(const std::string& file) { return Look(file, true); }
 
 void RememberRead(const std::string& file) {
   const auto identity = IdentityOfRegular(file);

@@ -56,6 +56,11 @@ size_t Columns(std::FILE* out) {
   return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsualColumns;
 }
 
+std::vector<std::string>& Kept() {
+  static std::vector<std::string> kept;
+  return kept;
+}
+
 }  // namespace
 
 void TerminalLine::Draw(double fraction, const std::string& text) {
@@ -79,15 +84,6 @@ void TerminalLine::Wipe() {
   std::fflush(out_);
   drawn_.clear();
 }
-
-namespace {
-
-std::vector<std::string>& Kept() {
-  static std::vector<std::string> kept;
-  return kept;
-}
-
-}  // namespace
 
 void Remark(const std::string& line) { Kept().push_back(line); }
 

@@ -73,37 +73,6 @@ std::vector<std::string> UnitsLike(std::string_view unit) {
   return names;
 }
 
-}  // namespace
-
-std::string UnitSystem::UnitFor(const std::string& paper, int arm) const {
-  const bool cylinder = linear_arm && arm != 0;
-  const bool renamed = length != UnitSystem{}.length || force != UnitSystem{}.force;
-  if (!renamed && !cylinder) return paper;
-  const std::optional<std::vector<UnitPower>> parts = UnitPowers(paper);
-  if (!parts.has_value()) return paper;
-  std::vector<UnitPower> powers;
-  for (const UnitPower& part : *parts) {
-    if (part.name == "in") {
-      powers.push_back({length, part.power});
-    } else if (part.name == "lbf" || part.name == "lb") {
-      powers.push_back({force, part.power});
-    } else if (part.name == "psi") {
-      for (const UnitPower& one : Pressure(*this)) powers.push_back({one.name, one.power * part.power});
-    } else if (part.name != "rad" || !cylinder) {
-      powers.push_back(part);
-    }
-  }
-  if (cylinder) powers.push_back({length, static_cast<double>(arm)});
-  powers = Merged(powers);
-  std::ranges::stable_sort(powers, {}, [this](const UnitPower& unit) { return Place(unit, *this); });
-  return Written(powers, renamed ? ' ' : '-');
-}
-
-std::vector<std::string> LengthUnits() { return UnitsLike("m"); }
-std::vector<std::string> ForceUnits() { return UnitsLike("N"); }
-
-namespace {
-
 // Spellings that have only one meaning. Elsewhere, upper and lower case differ: mPa is not MPa.
 constexpr std::pair<std::string_view, std::string_view> kSpellings[] = {
     {"sec", "s"},      {"Sec", "s"},        {"S", "s"},          {"msec", "ms"},     {"volt", "V"},
@@ -152,6 +121,33 @@ std::string WithOurSigns(std::string_view text) {
 }
 
 }  // namespace
+
+std::string UnitSystem::UnitFor(const std::string& paper, int arm) const {
+  const bool cylinder = linear_arm && arm != 0;
+  const bool renamed = length != UnitSystem{}.length || force != UnitSystem{}.force;
+  if (!renamed && !cylinder) return paper;
+  const std::optional<std::vector<UnitPower>> parts = UnitPowers(paper);
+  if (!parts.has_value()) return paper;
+  std::vector<UnitPower> powers;
+  for (const UnitPower& part : *parts) {
+    if (part.name == "in") {
+      powers.push_back({length, part.power});
+    } else if (part.name == "lbf" || part.name == "lb") {
+      powers.push_back({force, part.power});
+    } else if (part.name == "psi") {
+      for (const UnitPower& one : Pressure(*this)) powers.push_back({one.name, one.power * part.power});
+    } else if (part.name != "rad" || !cylinder) {
+      powers.push_back(part);
+    }
+  }
+  if (cylinder) powers.push_back({length, static_cast<double>(arm)});
+  powers = Merged(powers);
+  std::ranges::stable_sort(powers, {}, [this](const UnitPower& unit) { return Place(unit, *this); });
+  return Written(powers, renamed ? ' ' : '-');
+}
+
+std::vector<std::string> LengthUnits() { return UnitsLike("m"); }
+std::vector<std::string> ForceUnits() { return UnitsLike("N"); }
 
 std::string_view OurSpelling(std::string_view unit) {
   const auto* const found = std::ranges::find(kSpellings, unit, [](const auto& row) { return row.first; });

@@ -62,6 +62,21 @@ void WriteStudy(const Study& study, const std::string& folder) {
   WriteWholeFile(folder + "/study.toml", study.files.at("study.toml"));
 }
 
+namespace fs = std::filesystem;
+
+// Removes what a killed process left when it was writing one of the study's own files.
+void SweepParts(const Study& study, const std::string& folder) {
+  std::error_code failed;
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(folder, failed)) {
+    const fs::path whole = WholeOfPart(entry.path().filename());
+    const bool ours = study.files.contains(whole) || whole == "table.csv" || whole == "table.json" ||
+                      whole.extension() == ".svg" || whole.extension() == ".html";
+    if (ours && entry.is_regular_file(failed) && !IsBeingWritten(entry.path())) left.push_back(entry.path());
+  }
+  for (const fs::path& path : left) fs::remove(path, failed);
+}
+
 }  // namespace
 
 void PrepareStudy(const Study& study, const std::string& folder) {
@@ -91,25 +106,6 @@ Study OpenStudy(const std::string& folder) {
                      "folder, an empty one, or one of hydro-batch");
   return study;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-// Removes what a killed process left when it was writing one of the study's own files.
-void SweepParts(const Study& study, const std::string& folder) {
-  std::error_code failed;
-  std::vector<fs::path> left;
-  for (const auto& entry : fs::directory_iterator(folder, failed)) {
-    const fs::path whole = WholeOfPart(entry.path().filename());
-    const bool ours = study.files.contains(whole) || whole == "table.csv" || whole == "table.json" ||
-                      whole.extension() == ".svg" || whole.extension() == ".html";
-    if (ours && entry.is_regular_file(failed) && !IsBeingWritten(entry.path())) left.push_back(entry.path());
-  }
-  for (const fs::path& path : left) fs::remove(path, failed);
-}
-
-}  // namespace
 
 TableCounts FinishStudy(const std::string& folder, int jobs) {
   const Study study = OpenStudy(folder);

@@ -14,24 +14,6 @@ namespace {
 
 constexpr char kEnding[] = ".json";
 
-}  // namespace
-
-TimingFiles::TimingFiles(const std::string& json) : json_(json) {
-  if (!json.ends_with(kEnding) || json.size() == sizeof kEnding - 1) {
-    throw InputError("--timing: found " + json + ", allowed is a name that ends in .json");
-  }
-  page_ = json.substr(0, json.size() - (sizeof kEnding - 1)) + ".html";
-  CheckCanBeCreated(json_);
-  CheckCanBeCreated(page_);
-}
-
-void TimingFiles::Write(const std::vector<timing::TimedProcess>& processes, const std::string& source) const {
-  WriteWholeFile(json_, timing::TimingJson(processes, source), Existing::kKept);
-  WriteWholeFile(page_, timing::TimingPage(processes, source), Existing::kKept);
-}
-
-namespace {
-
 // Whether the log has a state: without one, hydro-log summary has nothing to report. A log with states has
 // one near its beginning, so little of it is read.
 bool HasState(const std::string& file) {
@@ -48,6 +30,20 @@ bool HasState(const std::string& file) {
 }
 
 }  // namespace
+
+TimingFiles::TimingFiles(const std::string& json) : json_(json) {
+  if (!json.ends_with(kEnding) || json.size() == sizeof kEnding - 1) {
+    throw InputError("--timing: found " + json + ", allowed is a name that ends in .json");
+  }
+  page_ = json.substr(0, json.size() - (sizeof kEnding - 1)) + ".html";
+  CheckCanBeCreated(json_);
+  CheckCanBeCreated(page_);
+}
+
+void TimingFiles::Write(const std::vector<timing::TimedProcess>& processes, const std::string& source) const {
+  WriteWholeFile(json_, timing::TimingJson(processes, source), Existing::kKept);
+  WriteWholeFile(page_, timing::TimingPage(processes, source), Existing::kKept);
+}
 
 TerminalReport::TerminalReport(LabelledOutput& output, const settings::StackConfig& config,
                                const LaunchPlan& plan, const ReportStyle& style, const std::string& log_file)

@@ -33,6 +33,27 @@ const std::array<Ink, 6>& Inks() {
 
 constexpr size_t kFewPoints = 300;  // beyond this, separate points get small markers
 
+std::string MarkerShape(Marker marker, double r) {
+  switch (marker) {
+    case Marker::kNone:
+      return "";
+    case Marker::kDisc:
+    case Marker::kRing:
+      return fmt::format("m{0:.4g} 0a{1:.4g} {1:.4g} 0 1 0 {2:.4g} 0a{1:.4g} {1:.4g} 0 1 0 -{2:.4g} 0z", -r,
+                         r, 2 * r);
+    case Marker::kSquare:
+      return fmt::format("m{0:.4g} {0:.4g}h{1:.4g}v{1:.4g}h-{1:.4g}z", -0.88 * r, 1.76 * r);
+    case Marker::kTriangle:
+      return fmt::format("m0 {:.4g}l{:.4g} {:.4g}h{:.4g}z", -1.2 * r, 1.1 * r, 1.9 * r, -2.2 * r);
+    case Marker::kDiamond:
+      return fmt::format("m0 {0:.4g}l{1:.4g} {1:.4g}l-{1:.4g} {1:.4g}l-{1:.4g} -{1:.4g}z", -1.25 * r,
+                         1.25 * r);
+    case Marker::kTriangleDown:
+      return fmt::format("m0 {:.4g}l{:.4g} {:.4g}h{:.4g}z", 1.2 * r, -1.1 * r, -1.9 * r, 2.2 * r);
+  }
+  return "";
+}
+
 }  // namespace
 
 CurveStyle StyleOf(const Curve& curve, int place) {
@@ -83,31 +104,6 @@ CurveStyle StyleOf(const Curve& curve, int place) {
   }
   return style;
 }
-
-namespace {
-
-std::string MarkerShape(Marker marker, double r) {
-  switch (marker) {
-    case Marker::kNone:
-      return "";
-    case Marker::kDisc:
-    case Marker::kRing:
-      return fmt::format("m{0:.4g} 0a{1:.4g} {1:.4g} 0 1 0 {2:.4g} 0a{1:.4g} {1:.4g} 0 1 0 -{2:.4g} 0z", -r,
-                         r, 2 * r);
-    case Marker::kSquare:
-      return fmt::format("m{0:.4g} {0:.4g}h{1:.4g}v{1:.4g}h-{1:.4g}z", -0.88 * r, 1.76 * r);
-    case Marker::kTriangle:
-      return fmt::format("m0 {:.4g}l{:.4g} {:.4g}h{:.4g}z", -1.2 * r, 1.1 * r, 1.9 * r, -2.2 * r);
-    case Marker::kDiamond:
-      return fmt::format("m0 {0:.4g}l{1:.4g} {1:.4g}l-{1:.4g} {1:.4g}l-{1:.4g} -{1:.4g}z", -1.25 * r,
-                         1.25 * r);
-    case Marker::kTriangleDown:
-      return fmt::format("m0 {:.4g}l{:.4g} {:.4g}h{:.4g}z", 1.2 * r, -1.1 * r, -1.9 * r, 2.2 * r);
-  }
-  return "";
-}
-
-}  // namespace
 
 std::string LineAttributes(const CurveStyle& style) {
   std::string text = fmt::format(" stroke-width=\"{:g}\"", style.width);

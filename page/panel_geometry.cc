@@ -67,60 +67,6 @@ void Equalise(PanelGeometry& panel) {
   }
 }
 
-}  // namespace
-
-double AxisRange::Fraction(double value) const {
-  return logarithmic ? std::log(value / min) / std::log(max / min) : (value - min) / (max - min);
-}
-
-PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& where) {
-  if (panel.curves.empty()) throw std::invalid_argument(where + ": no curve");
-  Extent x_data(panel.x.logarithmic);
-  for (const Curve& curve : panel.curves) {
-    const size_t points = curve.x.size();
-    const auto fits = [&](const std::vector<double>& bound) {
-      return bound.empty() || bound.size() == points;
-    };
-    if (curve.y.size() != points || !fits(curve.y_low) || !fits(curve.y_high) ||
-        curve.y_low.empty() != curve.y_high.empty()) {
-      throw std::invalid_argument(where + ": the vectors of curve '" + curve.label +
-                                  "' are of unequal length");
-    }
-    for (size_t i = 0; i < points; ++i) {
-      if (std::isfinite(curve.y[i])) x_data.Add(curve.x[i]);
-    }
-  }
-  for (const Note& note : panel.notes) x_data.Add(note.x);
-  for (const Rule& rule : panel.rules) {
-    if (rule.vertical) x_data.Add(rule.value);
-  }
-  PanelGeometry geometry{frame, Fit(panel.x, x_data.range(), panel.equal_scales ? 0.05 : 0.0, where), {}};
-
-  Extent y_data(panel.y.logarithmic);
-  const AxisRange& shown = geometry.x;
-  for (const Curve& curve : panel.curves) {
-    for (size_t i = 0; i < curve.x.size(); ++i) {
-      if (!shown.Holds(curve.x[i])) continue;
-      y_data.Add(curve.y[i]);
-      if (!curve.y_low.empty()) {
-        y_data.Add(curve.y_low[i]);
-        y_data.Add(curve.y_high[i]);
-      }
-    }
-  }
-  for (const Note& note : panel.notes) {
-    if (shown.Holds(note.x)) y_data.Add(note.y);
-  }
-  for (const Rule& rule : panel.rules) {
-    if (!rule.vertical) y_data.Add(rule.value);
-  }
-  geometry.y = Fit(panel.y, y_data.range(), 0.06, where);
-  if (panel.equal_scales) Equalise(geometry);
-  return geometry;
-}
-
-namespace {
-
 constexpr char kMinus[] = "−";
 
 // The smallest 1, 2 or 5 times a power of ten that is at least `least`.
@@ -178,6 +124,56 @@ std::vector<Tick> LogarithmicTicks(const AxisRange& range, double pixels, double
 }
 
 }  // namespace
+
+double AxisRange::Fraction(double value) const {
+  return logarithmic ? std::log(value / min) / std::log(max / min) : (value - min) / (max - min);
+}
+
+PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& where) {
+  if (panel.curves.empty()) throw std::invalid_argument(where + ": no curve");
+  Extent x_data(panel.x.logarithmic);
+  for (const Curve& curve : panel.curves) {
+    const size_t points = curve.x.size();
+    const auto fits = [&](const std::vector<double>& bound) {
+      return bound.empty() || bound.size() == points;
+    };
+    if (curve.y.size() != points || !fits(curve.y_low) || !fits(curve.y_high) ||
+        curve.y_low.empty() != curve.y_high.empty()) {
+      throw std::invalid_argument(where + ": the vectors of curve '" + curve.label +
+                                  "' are of unequal length");
+    }
+    for (size_t i = 0; i < points; ++i) {
+      if (std::isfinite(curve.y[i])) x_data.Add(curve.x[i]);
+    }
+  }
+  for (const Note& note : panel.notes) x_data.Add(note.x);
+  for (const Rule& rule : panel.rules) {
+    if (rule.vertical) x_data.Add(rule.value);
+  }
+  PanelGeometry geometry{frame, Fit(panel.x, x_data.range(), panel.equal_scales ? 0.05 : 0.0, where), {}};
+
+  Extent y_data(panel.y.logarithmic);
+  const AxisRange& shown = geometry.x;
+  for (const Curve& curve : panel.curves) {
+    for (size_t i = 0; i < curve.x.size(); ++i) {
+      if (!shown.Holds(curve.x[i])) continue;
+      y_data.Add(curve.y[i]);
+      if (!curve.y_low.empty()) {
+        y_data.Add(curve.y_low[i]);
+        y_data.Add(curve.y_high[i]);
+      }
+    }
+  }
+  for (const Note& note : panel.notes) {
+    if (shown.Holds(note.x)) y_data.Add(note.y);
+  }
+  for (const Rule& rule : panel.rules) {
+    if (!rule.vertical) y_data.Add(rule.value);
+  }
+  geometry.y = Fit(panel.y, y_data.range(), 0.06, where);
+  if (panel.equal_scales) Equalise(geometry);
+  return geometry;
+}
 
 std::vector<Tick> Ticks(const AxisRange& range, double pixels, double label_pixels) {
   if (!range.logarithmic) return LinearTicks(range, pixels, label_pixels);

@@ -28,6 +28,21 @@ FoxgloveTopic Topic() {
   return topic;
 }
 
+using nlohmann::json;
+
+constexpr size_t kMostSubscriptions = 64;
+constexpr size_t kMostReplies = 16;
+constexpr char kMessageData = 1;  // the opcode
+
+std::string Reply(const json& object) { return JsonText(object); }
+
+template <class T>
+void Put(std::string& bytes, T value) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);  // little endian, like every number here
+  bytes.append(raw, sizeof value);
+}
+
 }  // namespace
 
 std::string FoxgloveTopic::SchemaIn(const UnitSystem& units) const {
@@ -51,25 +66,6 @@ const std::vector<FoxgloveTopic>& FoxgloveTopics() {
       Topic<arm_reference_t>(), Topic<fault_t>(),         Topic<loop_statistics_t>()};
   return topics;
 }
-
-namespace {
-
-using nlohmann::json;
-
-constexpr size_t kMostSubscriptions = 64;
-constexpr size_t kMostReplies = 16;
-constexpr char kMessageData = 1;  // the opcode
-
-std::string Reply(const json& object) { return JsonText(object); }
-
-template <class T>
-void Put(std::string& bytes, T value) {
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);  // little endian, like every number here
-  bytes.append(raw, sizeof value);
-}
-
-}  // namespace
 
 bool FoxgloveConversation::Speaks(const std::string& subprotocol) {
   return subprotocol == "foxglove.websocket.v1" || subprotocol == "foxglove.sdk.v1";

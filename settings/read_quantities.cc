@@ -133,6 +133,20 @@ void Convert(const std::string& dotted, const std::string& unit, TomlNode* node)
   *node = std::move(number);
 }
 
+// What reference.signal says of the reference's values.
+std::string SignalOf(TomlNode* root) {
+  const TomlNode* reference = root->Find("reference");
+  const TomlNode* signal =
+      reference == nullptr || !reference->is(TomlNode::Kind::kTable) ? nullptr : reference->Find("signal");
+  return signal == nullptr ? "arm_angle" : signal->text;
+}
+
+bool HoldsNumber(const TomlNode& node) {
+  if (node.from_option) return false;
+  if (node.is(TomlNode::Kind::kArray)) return std::any_of(node.items.begin(), node.items.end(), HoldsNumber);
+  return node.is(TomlNode::Kind::kInteger) || node.is(TomlNode::Kind::kFloat);
+}
+
 }  // namespace
 
 void UsePresentNames(TomlNode* root) {
@@ -177,24 +191,6 @@ double NumberOf(const std::string& text, const std::string& unit, const std::str
   }
   return factor * *number;
 }
-
-namespace {
-
-// What reference.signal says of the reference's values.
-std::string SignalOf(TomlNode* root) {
-  const TomlNode* reference = root->Find("reference");
-  const TomlNode* signal =
-      reference == nullptr || !reference->is(TomlNode::Kind::kTable) ? nullptr : reference->Find("signal");
-  return signal == nullptr ? "arm_angle" : signal->text;
-}
-
-bool HoldsNumber(const TomlNode& node) {
-  if (node.from_option) return false;
-  if (node.is(TomlNode::Kind::kArray)) return std::any_of(node.items.begin(), node.items.end(), HoldsNumber);
-  return node.is(TomlNode::Kind::kInteger) || node.is(TomlNode::Kind::kFloat);
-}
-
-}  // namespace
 
 std::string FirstNumberThatChanges(TomlNode root, const UnitSystem& was, const UnitSystem& is) {
   UsePresentNames(&root);

@@ -59,6 +59,30 @@ bool IsOld(const std::filesystem::path& path) {
   return !failed && std::filesystem::file_time_type::clock::now() - changed > std::chrono::hours(24);
 }
 
+constexpr auto kBeat = std::chrono::seconds(5);
+constexpr double kSilent = 60;   // s
+constexpr int kMostUnread = 50;  // by then, a lock that is being released is free or has a new owner
+constexpr auto kUnread = std::chrono::milliseconds(20);
+
+double Seconds(const timespec& time) {
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// The current time according to the folder's file system, which may use another host's clock. 0 when it
+// cannot be found.
+double TimeThere(const std::string& folder) {
+  const std::string path = folder + "/lock.time." + NewOwnerName();
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) return 0;
+  struct stat status = {};
+  const bool known = fstat(descriptor, &status) == 0;
+  close(descriptor);
+  unlink(path.c_str());
+  return known ? Seconds(status.st_mtim) : 0;
+}
+
+void Touch(const std::string& file) { utimensat(AT_FDCWD, file.c_str(), nullptr, 0); }
+
 }  // namespace
 
 Owner ThisProcess() { return {PlainHost(), ThisBoot(), getpid(), StartOf(getpid())}; }
@@ -112,34 +136,6 @@ std::vector<std::string> LeftBehind(const std::string& folder) {
   }
   return paths;
 }
-
-namespace {
-
-constexpr auto kBeat = std::chrono::seconds(5);
-constexpr double kSilent = 60;   // s
-constexpr int kMostUnread = 50;  // by then, a lock that is being released is free or has a new owner
-constexpr auto kUnread = std::chrono::milliseconds(20);
-
-double Seconds(const timespec& time) {
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-// The current time according to the folder's file system, which may use another host's clock. 0 when it
-// cannot be found.
-double TimeThere(const std::string& folder) {
-  const std::string path = folder + "/lock.time." + NewOwnerName();
-  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) return 0;
-  struct stat status = {};
-  const bool known = fstat(descriptor, &status) == 0;
-  close(descriptor);
-  unlink(path.c_str());
-  return known ? Seconds(status.st_mtim) : 0;
-}
-
-void Touch(const std::string& file) { utimensat(AT_FDCWD, file.c_str(), nullptr, 0); }
-
-}  // namespace
 
 bool StudyLock::Holder(const std::string& folder, LockHolder* holder) {
   const std::string file = folder + "/lock";

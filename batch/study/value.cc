@@ -22,6 +22,37 @@ std::string FloatText(double value) {
   return text;
 }
 
+// The random key for a draw and a key of the study. `attempt` numbers independent ones.
+uint64_t KeyOf(const Draw& draw, int64_t seed, int64_t number, uint64_t attempt = 0) {
+  const uint64_t numbered = Scatter(Scatter(static_cast<uint64_t>(seed)) ^ static_cast<uint64_t>(number));
+  return Scatter(Scatter(numbered ^ NameKey(draw.key)) ^ attempt);
+}
+
+double Unit(const Draw& draw, int64_t seed, int64_t number) {
+  return static_cast<double>(KeyOf(draw, seed, number) >> 11) * 0x1p-53;
+}
+
+double Normal(const Draw& draw, int64_t seed, int64_t number) {
+  // Reading a study refuses bounds that leave little room, so this ends.
+  for (uint64_t attempt = 0; attempt < 10000; ++attempt) {
+    const double deviations = StandardNormal(KeyOf(draw, seed, number, attempt));
+    const double value = Rounded(draw.mean + draw.standard_deviation * deviations);
+    if (value >= draw.min && value <= draw.max) return value;
+  }
+  return std::clamp(draw.mean, draw.min, draw.max);
+}
+
+double Uncertain(const Draw& draw, int64_t seed, int64_t number) {
+  const std::string name = ParseKey(draw.key).parameter;
+  const size_t base = model::BasePlace(name);
+  model::ModelDescription model;
+  model::BaseValue(model.parameters, base) = draw.mean;
+  model.uncertainty[name] = draw.standard_deviation;
+  model::Deviate(&model, base,
+                 model::DrawnDeviation(static_cast<uint64_t>(seed), static_cast<uint64_t>(number), name));
+  return Rounded(model::BaseValue(model.parameters, base));
+}
+
 }  // namespace
 
 std::string TomlText(const Value& value) {
@@ -75,41 +106,6 @@ Value ValueOfCell(const std::string& cell) {
 }
 
 std::string JsonString(const std::string& text) { return hydro::JsonText(nlohmann::json(text)); }
-
-namespace {
-
-// The random key for a draw and a key of the study. `attempt` numbers independent ones.
-uint64_t KeyOf(const Draw& draw, int64_t seed, int64_t number, uint64_t attempt = 0) {
-  const uint64_t numbered = Scatter(Scatter(static_cast<uint64_t>(seed)) ^ static_cast<uint64_t>(number));
-  return Scatter(Scatter(numbered ^ NameKey(draw.key)) ^ attempt);
-}
-
-double Unit(const Draw& draw, int64_t seed, int64_t number) {
-  return static_cast<double>(KeyOf(draw, seed, number) >> 11) * 0x1p-53;
-}
-
-double Normal(const Draw& draw, int64_t seed, int64_t number) {
-  // Reading a study refuses bounds that leave little room, so this ends.
-  for (uint64_t attempt = 0; attempt < 10000; ++attempt) {
-    const double deviations = StandardNormal(KeyOf(draw, seed, number, attempt));
-    const double value = Rounded(draw.mean + draw.standard_deviation * deviations);
-    if (value >= draw.min && value <= draw.max) return value;
-  }
-  return std::clamp(draw.mean, draw.min, draw.max);
-}
-
-double Uncertain(const Draw& draw, int64_t seed, int64_t number) {
-  const std::string name = ParseKey(draw.key).parameter;
-  const size_t base = model::BasePlace(name);
-  model::ModelDescription model;
-  model::BaseValue(model.parameters, base) = draw.mean;
-  model.uncertainty[name] = draw.standard_deviation;
-  model::Deviate(&model, base,
-                 model::DrawnDeviation(static_cast<uint64_t>(seed), static_cast<uint64_t>(number), name));
-  return Rounded(model::BaseValue(model.parameters, base));
-}
-
-}  // namespace
 
 double Rounded(double value) { return ParseNumber(ShortNumber(value, 12)).value_or(value); }
 

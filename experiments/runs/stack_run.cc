@@ -45,23 +45,6 @@ class Recording {
   runs::RunLog log_;
 };
 
-}  // namespace
-
-tables::Table RunStackInProcess(const StackSetup& setup) {
-  settings::StackConfig config =
-      settings::ParseStackConfig(setup.config, setup.name, setup.model, setup.name + " (model)");
-  config.bus.channel_suffix.clear();
-  Recording recording;
-  recording.log().file = setup.name;
-  const sim::SimulationResult result =
-      sim::Simulate(config, [&](const bus::RawMessage& message) { recording.Take(message); });
-  if (result.exit_code != 0) throw std::runtime_error(setup.name + ": the run failed: " + result.failure);
-  return runs::ExportRun(recording.log());
-}
-
-// The stack as separate processes in real time.
-namespace {
-
 // Runs a program to its end with its output in `output_file`. Returns its exit code, or 128 + N when signal N
 // ended it. The program gets SIGTERM when this process dies.
 int RunToItsEnd(const std::vector<std::string>& command, const std::string& output_file) {
@@ -106,6 +89,20 @@ std::string LastLines(const std::string& file, size_t count) {
 }
 
 }  // namespace
+
+tables::Table RunStackInProcess(const StackSetup& setup) {
+  settings::StackConfig config =
+      settings::ParseStackConfig(setup.config, setup.name, setup.model, setup.name + " (model)");
+  config.bus.channel_suffix.clear();
+  Recording recording;
+  recording.log().file = setup.name;
+  const sim::SimulationResult result =
+      sim::Simulate(config, [&](const bus::RawMessage& message) { recording.Take(message); });
+  if (result.exit_code != 0) throw std::runtime_error(setup.name + ": the run failed: " + result.failure);
+  return runs::ExportRun(recording.log());
+}
+
+// The stack as separate processes in real time.
 
 StackRunner SeparateProcesses(const std::string& program_folder, const std::string& folder) {
   // Two real-time stacks at once would compete for the processor.

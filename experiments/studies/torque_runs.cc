@@ -32,6 +32,38 @@ std::vector<double> Scaled(std::vector<double> values, double factor) {
   return values;
 }
 
+constexpr double kReach = 0.1;            // rad
+constexpr double kPointInterval = 0.005;  // s, of the path and of the command
+// Speeds and accelerations of the unit quintic 10 s^3 - 15 s^4 + 6 s^5 peak at 15/8 and 5.77.
+constexpr double kPeakRate = 1.875;
+
+std::string Points(double duration, const auto& value) {
+  std::string out;
+  const auto count = static_cast<int>(std::lround(duration / kPointInterval));
+  for (int i = 0; i <= count; ++i) {
+    const double time = i * kPointInterval;
+    out += fmt::format("{}[{}, {}]", i == 0 ? "" : ", ", time, value(time));
+  }
+  return "[" + out + "]";
+}
+
+// Solves k_1 (k_p e - k_p k_v w) = J theta'' + b theta' + T_s sgn(theta') + D (ref - e) for e. w is the pump
+// speed that the k_v term sees; the higher side leaks (c_I + c_E) |dp| while the other is at p_3.
+double PathError(const model::Parameters& p, const pressure_ctrl::PressureGains& gains, double reference,
+                 double arm_speed, double arm_acceleration, bool arm_speed_feedforward) {
+  const double forced = p.c / p.D * arm_speed;
+  const double leak_per_psi = (p.c_I + p.c_E) / p.D;  // rad/s per psi
+  const double gain = p.k_1 * gains.k_p;
+  const double braking = gain * gains.k_v;
+  const double seen = arm_speed_feedforward ? 0 : forced;
+  const double turns = forced + leak_per_psi * reference;  // for the sign of friction
+  const double friction = turns == 0 ? 0 : std::copysign(p.T_s, turns);
+  const double torque = p.J * p.c / p.D * arm_acceleration + p.b * forced + friction + braking * seen;
+  // leak_per_psi (ref - e) turns the pump as well, which adds b and the k_v term.
+  const double per_psi = p.D + (p.b + braking) * leak_per_psi;
+  return (torque + per_psi * reference) / (gain + per_psi);
+}
+
 }  // namespace
 
 TorqueStep RunTorqueStep(const StackRunner& run_stack, double command, double feedforward) {
@@ -109,42 +141,6 @@ double LinearBandwidthHz(int compressed_sides) {
   const double a = 1 - 2 * loop.damping_ratio * loop.damping_ratio;
   return loop.natural_frequency * std::sqrt(a + std::sqrt(a * a + 1)) / (2 * std::numbers::pi);
 }
-
-namespace {
-
-constexpr double kReach = 0.1;            // rad
-constexpr double kPointInterval = 0.005;  // s, of the path and of the command
-// Speeds and accelerations of the unit quintic 10 s^3 - 15 s^4 + 6 s^5 peak at 15/8 and 5.77.
-constexpr double kPeakRate = 1.875;
-
-std::string Points(double duration, const auto& value) {
-  std::string out;
-  const auto count = static_cast<int>(std::lround(duration / kPointInterval));
-  for (int i = 0; i <= count; ++i) {
-    const double time = i * kPointInterval;
-    out += fmt::format("{}[{}, {}]", i == 0 ? "" : ", ", time, value(time));
-  }
-  return "[" + out + "]";
-}
-
-// Solves k_1 (k_p e - k_p k_v w) = J theta'' + b theta' + T_s sgn(theta') + D (ref - e) for e. w is the pump
-// speed that the k_v term sees; the higher side leaks (c_I + c_E) |dp| while the other is at p_3.
-double PathError(const model::Parameters& p, const pressure_ctrl::PressureGains& gains, double reference,
-                 double arm_speed, double arm_acceleration, bool arm_speed_feedforward) {
-  const double forced = p.c / p.D * arm_speed;
-  const double leak_per_psi = (p.c_I + p.c_E) / p.D;  // rad/s per psi
-  const double gain = p.k_1 * gains.k_p;
-  const double braking = gain * gains.k_v;
-  const double seen = arm_speed_feedforward ? 0 : forced;
-  const double turns = forced + leak_per_psi * reference;  // for the sign of friction
-  const double friction = turns == 0 ? 0 : std::copysign(p.T_s, turns);
-  const double torque = p.J * p.c / p.D * arm_acceleration + p.b * forced + friction + braking * seen;
-  // leak_per_psi (ref - e) turns the pump as well, which adds b and the k_v term.
-  const double per_psi = p.D + (p.b + braking) * leak_per_psi;
-  return (torque + per_psi * reference) / (gain + per_psi);
-}
-
-}  // namespace
 
 SmoothPath::SmoothPath(double reach, double largest_speed)
     : reach_(reach),

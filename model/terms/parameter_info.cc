@@ -46,6 +46,26 @@ BaseParameter AnySign(double Parameters::*member, double uncertainty, const Mean
   return parameter;
 }
 
+// A value that is unusual, and by how many powers of ten.
+struct Outlier {
+  double decades = 3;
+  std::string text;
+};
+
+void Compare(const ParameterInfo& info, const UnitSystem& units, const std::string& owner, double value,
+             Outlier* most) {
+  const std::string unit = info.UnitIn(units);
+  const std::optional<Unit> paper = ParseUnit(info.unit), own = ParseUnit(unit);
+  const double usual = paper && own ? info.example * paper->size / own->size : info.example;
+  if (value == 0 || usual == 0 || !std::isfinite(value)) return;
+  const double decades = std::log10(std::fabs(value / usual));
+  const bool small_is_none = info.min < 0 || (info.min == 0 && info.min_allowed);
+  if ((small_is_none && decades < 0) || !(std::fabs(decades) > most->decades)) return;
+  most->decades = std::fabs(decades);
+  most->text = owner + info.name + " = " + ShortestNumber(value) + (unit == "1" ? "" : " " + unit) +
+               ", where " + ShortNumber(usual, 2) + " is usual";
+}
+
 }  // namespace
 
 Standard::Standard(double value)
@@ -93,30 +113,6 @@ const std::vector<BaseParameter>& BaseParameters() {
   };
   return parameters;
 }
-
-namespace {
-
-// A value that is unusual, and by how many powers of ten.
-struct Outlier {
-  double decades = 3;
-  std::string text;
-};
-
-void Compare(const ParameterInfo& info, const UnitSystem& units, const std::string& owner, double value,
-             Outlier* most) {
-  const std::string unit = info.UnitIn(units);
-  const std::optional<Unit> paper = ParseUnit(info.unit), own = ParseUnit(unit);
-  const double usual = paper && own ? info.example * paper->size / own->size : info.example;
-  if (value == 0 || usual == 0 || !std::isfinite(value)) return;
-  const double decades = std::log10(std::fabs(value / usual));
-  const bool small_is_none = info.min < 0 || (info.min == 0 && info.min_allowed);
-  if ((small_is_none && decades < 0) || !(std::fabs(decades) > most->decades)) return;
-  most->decades = std::fabs(decades);
-  most->text = owner + info.name + " = " + ShortestNumber(value) + (unit == "1" ? "" : " " + unit) +
-               ", where " + ShortNumber(usual, 2) + " is usual";
-}
-
-}  // namespace
 
 std::string MostUnusual(const ModelDescription& model) {
   Outlier most;

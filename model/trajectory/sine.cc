@@ -46,23 +46,6 @@ class Sine : public Trajectory {
   bool continuous_;
 };
 
-}  // namespace
-
-std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double frequency_hz, double start,
-                                     double phase_rad) {
-  RequireFinite("offset", offset);
-  RequireFinite("amplitude", amplitude);
-  RequirePositive("frequency", frequency_hz);
-  RequireFinite("start", start);
-  RequireFinite("phase", phase_rad);
-  RequireFinite("offset + amplitude", std::abs(offset) + std::abs(amplitude));
-  RequireFinite("rate", 2 * M_PI * frequency_hz * amplitude);
-  return std::make_unique<Sine>(offset, amplitude, frequency_hz, start, phase_rad);
-}
-
-// A sine whose frequency changes linearly with time; its phase is continuous throughout.
-namespace {
-
 class Chirp : public Trajectory {
  public:
   Chirp(double offset, double amplitude, double first_hz, double last_hz, double start, double duration)
@@ -114,6 +97,20 @@ void RequireFrequency(const std::string& what, double value) {
 }
 
 }  // namespace
+
+std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double frequency_hz, double start,
+                                     double phase_rad) {
+  RequireFinite("offset", offset);
+  RequireFinite("amplitude", amplitude);
+  RequirePositive("frequency", frequency_hz);
+  RequireFinite("start", start);
+  RequireFinite("phase", phase_rad);
+  RequireFinite("offset + amplitude", std::abs(offset) + std::abs(amplitude));
+  RequireFinite("rate", 2 * M_PI * frequency_hz * amplitude);
+  return std::make_unique<Sine>(offset, amplitude, frequency_hz, start, phase_rad);
+}
+
+// A sine whose frequency changes linearly with time; its phase is continuous throughout.
 
 std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double first_hz, double last_hz,
                                       double start, double duration) {

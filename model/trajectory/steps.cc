@@ -43,17 +43,6 @@ class Steps : public Trajectory {
   double max_;
 };
 
-}  // namespace
-
-std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps) {
-  RequireFinite("initial", initial);
-  RequireIncreasing("step", steps);
-  return std::make_unique<Steps>(initial, std::move(steps));
-}
-
-// A square wave.
-namespace {
-
 class Square : public Trajectory {
  public:
   Square(double offset, double amplitude, double frequency_hz, double start)
@@ -100,6 +89,14 @@ class Square : public Trajectory {
 };
 
 }  // namespace
+
+std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps) {
+  RequireFinite("initial", initial);
+  RequireIncreasing("step", steps);
+  return std::make_unique<Steps>(initial, std::move(steps));
+}
+
+// A square wave.
 
 std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double frequency_hz, double start) {
   RequireFinite("offset", offset);

@@ -92,34 +92,6 @@ void CatchEndingSignals() {
   }
 }
 
-}  // namespace
-
-bool WriteZeroTo(Device& device, double zero) noexcept {
-  const int error = errno;
-  bool taken = false;
-  for (int i = 0; i < kTries && !taken; ++i) taken = device.Zero(zero);
-  errno = error;
-  return taken;
-}
-
-void ArmZero(Device& device, double zero) {
-  armed.store(nullptr);
-  armed_zero = zero;
-  armed.store(&device);
-  static const bool installed = [] {
-    std::atexit([] { WriteArmed(); });
-    std::at_quick_exit([] { WriteArmed(); });
-    previous_terminate = std::set_terminate(OnTerminate);
-    CatchEndingSignals();
-    return true;
-  }();
-  static_cast<void>(installed);
-}
-
-void DisarmZero() { armed.store(nullptr); }
-
-namespace {
-
 // What the driver tells its guardian.
 constexpr char kDismissed = 'd', kWriteZero = 'z';
 constexpr int kExitTimeout_ms = 500;  // for a guardian that was told something
@@ -165,6 +137,30 @@ char Word(int pipe, int driver) {
 }
 
 }  // namespace
+
+bool WriteZeroTo(Device& device, double zero) noexcept {
+  const int error = errno;
+  bool taken = false;
+  for (int i = 0; i < kTries && !taken; ++i) taken = device.Zero(zero);
+  errno = error;
+  return taken;
+}
+
+void ArmZero(Device& device, double zero) {
+  armed.store(nullptr);
+  armed_zero = zero;
+  armed.store(&device);
+  static const bool installed = [] {
+    std::atexit([] { WriteArmed(); });
+    std::at_quick_exit([] { WriteArmed(); });
+    previous_terminate = std::set_terminate(OnTerminate);
+    CatchEndingSignals();
+    return true;
+  }();
+  static_cast<void>(installed);
+}
+
+void DisarmZero() { armed.store(nullptr); }
 
 ZeroGuardian::ZeroGuardian(Device& device, const std::vector<int>& files, double zero) {
   int ends[2];

@@ -138,17 +138,6 @@ RepairResult Repair(const std::string& file, const std::string& out, const std::
   return result;
 }
 
-}  // namespace
-
-bool RepairResult::mended() const {
-  return !lost.empty() || lost_messages > 0 || verdict.completeness == Completeness::kDamaged ||
-         verdict.completeness == Completeness::kIncomplete;
-}
-
-RepairResult RepairLog(const std::string& file, const std::string& out) { return Repair(file, out, ""); }
-
-namespace {
-
 // Gives a log a second name, which is returned, rather than moving it: whatever happens now, a log exists
 // under the first name.
 std::string KeepAsDamaged(const std::string& file) {
@@ -162,6 +151,13 @@ std::string KeepAsDamaged(const std::string& file) {
 }
 
 }  // namespace
+
+bool RepairResult::mended() const {
+  return !lost.empty() || lost_messages > 0 || verdict.completeness == Completeness::kDamaged ||
+         verdict.completeness == Completeness::kIncomplete;
+}
+
+RepairResult RepairLog(const std::string& file, const std::string& out) { return Repair(file, out, ""); }
 
 RepairResult RepairInPlace(const std::string& file) {
   if (IsBeingWritten(file)) {

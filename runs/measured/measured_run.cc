@@ -49,6 +49,27 @@ void Convert(const UnitSystem& units, MeasuredRun* run) {
   run->units = units;
 }
 
+MeasuredRun ReadLogRun(const std::string& file, const std::optional<std::string>& joint,
+                       const std::optional<UnitSystem>& units) {
+  const RunLog log = ReadRunLog(file, {.joint = joint});
+  tables::Table table = ExportRun(log);
+  table.file = file;
+  if (log.messages.Of<run_description_t>().empty()) {
+    throw InputError(file +
+                     ": found no description of the run, allowed a log that has one, or a table (csv, mat) "
+                     "with a sidecar");
+  }
+  const run_description_t& description = log.messages.Of<run_description_t>().front();
+  RequireReadable(description, file);
+  MeasuredRun run = RunOfExport(table, description.config_text, description.model_text);
+  RequireEveryState(log, "fitting a model to it");
+  if (!log.joint.empty()) run.name += "_" + log.joint;
+  run.in_an_arm = HasArm(log.limb_config);
+  run.caution = DescribeCaution(log);
+  if (units.has_value()) Convert(*units, &run);
+  return run;
+}
+
 }  // namespace
 
 void MeasuredRun::Keep(size_t first, size_t last) {
@@ -117,31 +138,6 @@ RunName ParseRunName(const std::string& text) {
   if (hash == std::string::npos || std::filesystem::exists(text, error)) return {text};
   return {text.substr(0, hash), text.substr(hash + 1)};
 }
-
-namespace {
-
-MeasuredRun ReadLogRun(const std::string& file, const std::optional<std::string>& joint,
-                       const std::optional<UnitSystem>& units) {
-  const RunLog log = ReadRunLog(file, {.joint = joint});
-  tables::Table table = ExportRun(log);
-  table.file = file;
-  if (log.messages.Of<run_description_t>().empty()) {
-    throw InputError(file +
-                     ": found no description of the run, allowed a log that has one, or a table (csv, mat) "
-                     "with a sidecar");
-  }
-  const run_description_t& description = log.messages.Of<run_description_t>().front();
-  RequireReadable(description, file);
-  MeasuredRun run = RunOfExport(table, description.config_text, description.model_text);
-  RequireEveryState(log, "fitting a model to it");
-  if (!log.joint.empty()) run.name += "_" + log.joint;
-  run.in_an_arm = HasArm(log.limb_config);
-  run.caution = DescribeCaution(log);
-  if (units.has_value()) Convert(*units, &run);
-  return run;
-}
-
-}  // namespace
 
 std::vector<MeasuredRun> ReadMeasuredRuns(const std::string& text, const std::optional<UnitSystem>& units) {
   const auto& [file, joint] = ParseRunName(text);

@@ -126,6 +126,30 @@ TomlNode Convert(const toml::node& from, const std::string& name) {
   return node;
 }
 
+// Refuses files that are not settings text at all, whatever the first byte is that TOML does not allow.
+void RefuseOtherKinds(const std::string& text, const std::string& name) {
+  const std::optional<FileKind> kind = FindFileKind(std::string_view(text).substr(0, 64));
+  if (!kind.has_value() || *kind >= FileKind::kStack) return;
+  throw InputError(name + ": " + OtherKind(*kind, name, "a TOML file"));
+}
+
+// Whether each of the first two lines has cells, and both have the same number, as in a table.
+bool LooksLikeTable(const std::string& text) {
+  const size_t end = text.find('\n');
+  if (end == std::string::npos) return false;
+  const size_t next = std::min(text.find('\n', end + 1), text.size());
+  const auto count = [&](size_t from, size_t to, char separator) {
+    return std::count(text.begin() + static_cast<std::ptrdiff_t>(from),
+                      text.begin() + static_cast<std::ptrdiff_t>(to), separator);
+  };
+  if (count(0, end, '=') > 0) return false;
+  for (const char separator : {',', ';', '\t'}) {
+    const auto cells = count(0, end, separator);
+    if (cells > 0 && cells == count(end + 1, next, separator)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 const TomlNode* TomlNode::Find(const std::string& key) const {
@@ -183,34 +207,6 @@ TomlNode ArrayNode(std::vector<TomlNode> items) {
   node.items = std::move(items);
   return node;
 }
-
-namespace {
-
-// Refuses files that are not settings text at all, whatever the first byte is that TOML does not allow.
-void RefuseOtherKinds(const std::string& text, const std::string& name) {
-  const std::optional<FileKind> kind = FindFileKind(std::string_view(text).substr(0, 64));
-  if (!kind.has_value() || *kind >= FileKind::kStack) return;
-  throw InputError(name + ": " + OtherKind(*kind, name, "a TOML file"));
-}
-
-// Whether each of the first two lines has cells, and both have the same number, as in a table.
-bool LooksLikeTable(const std::string& text) {
-  const size_t end = text.find('\n');
-  if (end == std::string::npos) return false;
-  const size_t next = std::min(text.find('\n', end + 1), text.size());
-  const auto count = [&](size_t from, size_t to, char separator) {
-    return std::count(text.begin() + static_cast<std::ptrdiff_t>(from),
-                      text.begin() + static_cast<std::ptrdiff_t>(to), separator);
-  };
-  if (count(0, end, '=') > 0) return false;
-  for (const char separator : {',', ';', '\t'}) {
-    const auto cells = count(0, end, separator);
-    if (cells > 0 && cells == count(end + 1, next, separator)) return true;
-  }
-  return false;
-}
-
-}  // namespace
 
 TomlNode ParseToml(const std::string& text, const std::string& name) {
   RefuseOtherKinds(text, name);

@@ -64,6 +64,23 @@ constexpr std::array kChanges{"position.c2=900\nposition.c1=4000",
                               "limits.pressure_psi=1e6",
                               "limits.pressure_psi=1800"};
 
+// A plan for the next moments from this state on, along a sine with the stack's own amplitude and period.
+arm_plan_t PlanFrom(const state_t& state) {
+  constexpr int kPoints = 8;
+  constexpr double kInterval_s = 0.05, kAmplitude_rad = 0.2, kFrequency_rad_s = 2 * std::numbers::pi * 0.25;
+  arm_plan_t plan{};
+  plan.tick = state.tick;
+  plan.count = kPoints;
+  for (int i = 0; i < kPoints; ++i) {
+    const double time = state.time + kInterval_s * i;
+    plan.time.push_back(time);
+    plan.arm_angle.push_back(kAmplitude_rad * std::sin(kFrequency_rad_s * time));
+    plan.arm_speed.push_back(kAmplitude_rad * kFrequency_rad_s * std::cos(kFrequency_rad_s * time));
+    plan.torque.push_back(0);
+  }
+  return plan;
+}
+
 }  // namespace
 
 SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config, World& world, int number) {
@@ -142,27 +159,6 @@ SimulatedProcess::Body SetProgram(const settings::StackConfig& config, int which
     return answer && answer->accepted != 0 ? 0 : 1;
   };
 }
-
-namespace {
-
-// A plan for the next moments from this state on, along a sine with the stack's own amplitude and period.
-arm_plan_t PlanFrom(const state_t& state) {
-  constexpr int kPoints = 8;
-  constexpr double kInterval_s = 0.05, kAmplitude_rad = 0.2, kFrequency_rad_s = 2 * std::numbers::pi * 0.25;
-  arm_plan_t plan{};
-  plan.tick = state.tick;
-  plan.count = kPoints;
-  for (int i = 0; i < kPoints; ++i) {
-    const double time = state.time + kInterval_s * i;
-    plan.time.push_back(time);
-    plan.arm_angle.push_back(kAmplitude_rad * std::sin(kFrequency_rad_s * time));
-    plan.arm_speed.push_back(kAmplitude_rad * kFrequency_rad_s * std::cos(kFrequency_rad_s * time));
-    plan.torque.push_back(0);
-  }
-  return plan;
-}
-
-}  // namespace
 
 SimulatedProcess::Body PlannerProgram(const settings::StackConfig& config) {
   return [&config](bus::Bus& bus, bus::Clock& clock) {

@@ -68,68 +68,6 @@ Stacks LimbStacks(Schedule schedule, const std::string& config_file) {
           LimbOf(config)};
 }
 
-}  // namespace
-
-settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& file) {
-  std::vector<std::string> overrides{
-      std::string("time.mode=") + (schedule.lockstep ? "lockstep" : "realtime"),
-      "time.duration_s=0",
-      std::string("limits.rearm=") + (schedule.explicit_rearm ? "explicit" : "restart"),
-      fmt::format("limits.stale_input_s={}", schedule.stale_input_s),
-  };
-  if (schedule.planner && file.empty())
-    overrides.insert(overrides.end(), {"reference.kind=planner", "reference.timeout_s=0.2"});
-  if (!schedule.logger_required) overrides.emplace_back("logger.required=false");
-  if (file.empty()) return Parsed(overrides);
-  return settings::WithoutOwnPrograms(
-      settings::LoadStackConfig(file, overrides));  // simulated machines run our own programs
-}
-
-settings::StackConfig OtherConfig(const settings::StackConfig& config) {
-  settings::TomlNode stack = settings::ParseToml(config.text, config.file);
-  settings::ApplyOverrides({"position.c1=3000", "limits.arm_torque=400"}, &stack);
-  return settings::ParseStackConfig(settings::FormatToml(stack), config.file, config.model.text,
-                                    config.model.resolved_file);
-}
-
-settings::StackConfig HipOf(settings::StackConfig config) { return JointOf(std::move(config), kHip, kKnee); }
-settings::StackConfig KneeOf(settings::StackConfig config) { return JointOf(std::move(config), kKnee, kHip); }
-
-settings::StackConfig LimbOf(settings::StackConfig config) {
-  config.joints = {kHip, kKnee};
-  config.bus.joint_suffixes = {SuffixOf(kHip), SuffixOf(kKnee)};
-  return config;
-}
-
-settings::StackConfig OtherVersion(settings::StackConfig config) {
-  const std::string key = "version = ";
-  const size_t begin = config.agreed.find(key);
-  if (begin == std::string::npos) throw std::logic_error("processes do not agree on a version");
-  config.agreed.replace(begin, config.agreed.find('\n', begin) - begin, key + "'another'");
-  return config;
-}
-
-RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file, MessageTail* tail) {
-  // Configurations are cached, because reading one takes as long as a second of a run.
-  using Key = std::tuple<std::string, bool, bool, bool, bool, bool, double>;
-  static std::map<Key, Stacks> known;
-  const Key key(config_file, schedule.lockstep, schedule.explicit_rearm, schedule.logger_required,
-                schedule.planner, schedule.limb, schedule.stale_input_s);
-  auto found = known.find(key);
-  if (found == known.end()) {
-    found = known
-                .emplace(key, schedule.limb ? LimbStacks(schedule, config_file)
-                                            : OneStack(ConfigFor(schedule, config_file)))
-                .first;
-  }
-  const Silence silence;
-  World world(schedule, found->second);
-  world.SetTail(tail);
-  return world.Run();
-}
-
-namespace {
-
 class Shrinker {
  public:
   Shrinker(const Schedule& schedule, const std::function<bool(const Schedule&)>& fails, int most_runs)
@@ -224,6 +162,64 @@ class Shrinker {
 };
 
 }  // namespace
+
+settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& file) {
+  std::vector<std::string> overrides{
+      std::string("time.mode=") + (schedule.lockstep ? "lockstep" : "realtime"),
+      "time.duration_s=0",
+      std::string("limits.rearm=") + (schedule.explicit_rearm ? "explicit" : "restart"),
+      fmt::format("limits.stale_input_s={}", schedule.stale_input_s),
+  };
+  if (schedule.planner && file.empty())
+    overrides.insert(overrides.end(), {"reference.kind=planner", "reference.timeout_s=0.2"});
+  if (!schedule.logger_required) overrides.emplace_back("logger.required=false");
+  if (file.empty()) return Parsed(overrides);
+  return settings::WithoutOwnPrograms(
+      settings::LoadStackConfig(file, overrides));  // simulated machines run our own programs
+}
+
+settings::StackConfig OtherConfig(const settings::StackConfig& config) {
+  settings::TomlNode stack = settings::ParseToml(config.text, config.file);
+  settings::ApplyOverrides({"position.c1=3000", "limits.arm_torque=400"}, &stack);
+  return settings::ParseStackConfig(settings::FormatToml(stack), config.file, config.model.text,
+                                    config.model.resolved_file);
+}
+
+settings::StackConfig HipOf(settings::StackConfig config) { return JointOf(std::move(config), kHip, kKnee); }
+settings::StackConfig KneeOf(settings::StackConfig config) { return JointOf(std::move(config), kKnee, kHip); }
+
+settings::StackConfig LimbOf(settings::StackConfig config) {
+  config.joints = {kHip, kKnee};
+  config.bus.joint_suffixes = {SuffixOf(kHip), SuffixOf(kKnee)};
+  return config;
+}
+
+settings::StackConfig OtherVersion(settings::StackConfig config) {
+  const std::string key = "version = ";
+  const size_t begin = config.agreed.find(key);
+  if (begin == std::string::npos) throw std::logic_error("processes do not agree on a version");
+  config.agreed.replace(begin, config.agreed.find('\n', begin) - begin, key + "'another'");
+  return config;
+}
+
+RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file, MessageTail* tail) {
+  // Configurations are cached, because reading one takes as long as a second of a run.
+  using Key = std::tuple<std::string, bool, bool, bool, bool, bool, double>;
+  static std::map<Key, Stacks> known;
+  const Key key(config_file, schedule.lockstep, schedule.explicit_rearm, schedule.logger_required,
+                schedule.planner, schedule.limb, schedule.stale_input_s);
+  auto found = known.find(key);
+  if (found == known.end()) {
+    found = known
+                .emplace(key, schedule.limb ? LimbStacks(schedule, config_file)
+                                            : OneStack(ConfigFor(schedule, config_file)))
+                .first;
+  }
+  const Silence silence;
+  World world(schedule, found->second);
+  world.SetTail(tail);
+  return world.Run();
+}
 
 Schedule Shrink(const Schedule& schedule, const std::function<bool(const Schedule&)>& fails, int most_runs) {
   return Shrinker(schedule, fails, most_runs).Run();

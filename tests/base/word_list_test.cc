@@ -33,11 +33,6 @@ TEST(DidYouMeanTest, FindsNothingFarAway) {
   EXPECT_EQ(DidYouMean("x", {}), "");
 }
 
-}  // namespace
-
-// Tests of text as lines.
-namespace {
-
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -58,5 +53,7 @@ TEST(TextLines, Trims) {
 }
 
 }  // namespace
+
+// Tests of text as lines.
 
 }  // namespace hydro

@@ -121,6 +121,32 @@ std::string WhyTheLoopsForbid(const settings::StackConfig& configured, const set
               : "; what is in force is unstable, too: allowed is what makes it more stable");
 }
 
+// What to ask for instead of an undo that would loosen a limit, and therefore does nothing.
+std::string HowToTakeBackTheRest(const settings::StackConfig& in_force, const settings::StackConfig& next) {
+  std::string words;
+  for (const std::string& line : TextLines(DifferenceOf(in_force, next))) {
+    const std::string key = KeyOf(line);
+    if (std::any_of(kLimits.begin(), kLimits.end(), [&](const Limit& limit) { return key == limit.key; }))
+      continue;
+    const std::string value = Trimmed(line.substr(line.find('=') + 1));
+    const bool plain = value.find_first_of(" \"[]{}") == std::string::npos;
+    words += plain ? " " + key + "=" + value : " '" + key + "=" + value + "'";
+  }
+  if (words.empty())
+    return "; nothing else would change: with the limit as it is there is nothing to take back";
+  return "; to take back the rest alone, set it: hydro-set CONFIG" + words;
+}
+
+// For people, because an undo may remove a key again.
+std::string KeysTakenOut(const settings::StackConfig& from, const settings::StackConfig& to) {
+  const auto before = TunableEntries(from), after = TunableEntries(to);
+  std::string lines;
+  for (const auto& [key, value] : before) {
+    if (!after.contains(key)) lines += key + " as by default\n";
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::vector<std::string> ParseChanges(const std::string& lines) {
@@ -154,36 +180,6 @@ std::string DifferenceOf(const settings::StackConfig& from, const settings::Stac
   }
   return lines;
 }
-
-namespace {
-
-// What to ask for instead of an undo that would loosen a limit, and therefore does nothing.
-std::string HowToTakeBackTheRest(const settings::StackConfig& in_force, const settings::StackConfig& next) {
-  std::string words;
-  for (const std::string& line : TextLines(DifferenceOf(in_force, next))) {
-    const std::string key = KeyOf(line);
-    if (std::any_of(kLimits.begin(), kLimits.end(), [&](const Limit& limit) { return key == limit.key; }))
-      continue;
-    const std::string value = Trimmed(line.substr(line.find('=') + 1));
-    const bool plain = value.find_first_of(" \"[]{}") == std::string::npos;
-    words += plain ? " " + key + "=" + value : " '" + key + "=" + value + "'";
-  }
-  if (words.empty())
-    return "; nothing else would change: with the limit as it is there is nothing to take back";
-  return "; to take back the rest alone, set it: hydro-set CONFIG" + words;
-}
-
-// For people, because an undo may remove a key again.
-std::string KeysTakenOut(const settings::StackConfig& from, const settings::StackConfig& to) {
-  const auto before = TunableEntries(from), after = TunableEntries(to);
-  std::string lines;
-  for (const auto& [key, value] : before) {
-    if (!after.contains(key)) lines += key + " as by default\n";
-  }
-  return lines;
-}
-
-}  // namespace
 
 PreparedChange PrepareChange(const settings::StackConfig& configured, const settings::StackConfig& in_force,
                              const std::vector<std::string>& changes, const Situation& situation) {

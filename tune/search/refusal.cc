@@ -41,6 +41,26 @@ std::string MotorLimit(const settings::StackConfig& config, const design::RigidD
   return "the motor's torque T_pmax = " + Torque(config, p.T_pmax);
 }
 
+std::string SettledIn(double ratio) {
+  if (ratio >= kStopped) return "pass a limit that ends the run";
+  return ratio >= kNeverSettled ? "never settle"
+                                : "settle within " + Number(ratio) + " times the shortest time";
+}
+
+// "settle within 1.57 times the shortest time (with what may be true instead of the model: never)"
+std::string SpeedText(const Tried& tried) {
+  return SettledIn(tried.steps.ratio) +
+         " (with what may be true instead of the model: " + SettledIn(tried.steps.uncertain_ratio) + ")";
+}
+
+std::string MarginText(const design::LoopCheck& check) {
+  if (!check.unjudged.empty() || !check.pressure || !check.position) return "unknown margins";
+  const design::LoopMargins least = design::WorstOf(check.pressure->worst, check.position->worst);
+  if (!least.stable) return "an unstable loop";
+  return "a gain margin of " + Number(least.gain) + " and a phase margin of " + Number(least.phase_deg) +
+         " deg";
+}
+
 }  // namespace
 
 std::string RefusalByTheMotor(const StepJudge& judge, const Goals& goals) {
@@ -73,30 +93,6 @@ std::string RefusalByTheMotor(const StepJudge& judge, const Goals& goals) {
   }
   return "";
 }
-
-namespace {
-
-std::string SettledIn(double ratio) {
-  if (ratio >= kStopped) return "pass a limit that ends the run";
-  return ratio >= kNeverSettled ? "never settle"
-                                : "settle within " + Number(ratio) + " times the shortest time";
-}
-
-// "settle within 1.57 times the shortest time (with what may be true instead of the model: never)"
-std::string SpeedText(const Tried& tried) {
-  return SettledIn(tried.steps.ratio) +
-         " (with what may be true instead of the model: " + SettledIn(tried.steps.uncertain_ratio) + ")";
-}
-
-std::string MarginText(const design::LoopCheck& check) {
-  if (!check.unjudged.empty() || !check.pressure || !check.position) return "unknown margins";
-  const design::LoopMargins least = design::WorstOf(check.pressure->worst, check.position->worst);
-  if (!least.stable) return "an unstable loop";
-  return "a gain margin of " + Number(least.gain) + " and a phase margin of " + Number(least.phase_deg) +
-         " deg";
-}
-
-}  // namespace
 
 std::string RefusalToPropose(const StepJudge& judge, const Goals& goals, const Tried& best,
                              const Tried& configured) {

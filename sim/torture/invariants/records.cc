@@ -28,6 +28,11 @@ int64_t SaidToBeMissing(const log::LogVerdict& verdict) {
   return missing;
 }
 
+constexpr size_t kMostFalse = 256;
+constexpr size_t kMostSenders = 64;
+
+bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b); }
+
 }  // namespace
 
 void LogRecord::Handle(std::string_view channel, const uint8_t* data, size_t size) {
@@ -84,15 +89,6 @@ void LossCount::Handle(const Packet& state) {
   }
   newest_ = sequence;
 }
-
-namespace {
-
-constexpr size_t kMostFalse = 256;
-constexpr size_t kMostSenders = 64;
-
-bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b); }
-
-}  // namespace
 
 void PlantRecord::Receive(const ReceivedCommand& command) {
   if (read_tick < 0 || command.tick < 0) return;  // it does not answer any state

@@ -12,6 +12,8 @@ namespace {
 
 constexpr size_t kStackSize = 256 << 10;
 
+constexpr int kMostIdleTurns = 1000;
+
 }  // namespace
 
 Fiber::Fiber(std::function<void()> body)
@@ -38,12 +40,6 @@ void Fiber::Resume() {
 }
 
 void Fiber::Suspend() { outside_ = std::move(outside_).resume(); }
-
-namespace {
-
-constexpr int kMostIdleTurns = 1000;
-
-}  // namespace
 
 SimulatedProcess::SimulatedProcess(int number, Role role, Machine& machine, const TrueTime* now,
                                    bus::HostedProcess identity, NetworkPort& port, Body body)
