@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
   Run(*target, {});
   std::mt19937_64 random(1);
   for (const std::filesystem::path& file : files) {
-    std::fprintf(stderr, "%s\n", file.c_str());  // the last one is the culprit
+    std::fprintf(stderr, "%s\n", file.c_str());    // the last one is the culprit
     if (!std::filesystem::exists(file)) return 1;  // a link to a file of the project that has moved
     const Bytes bytes = ReadBytes(file);
     Run(*target, bytes);
