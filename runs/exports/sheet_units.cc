@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kEndings{
     {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_psi", "psi"}, {"_V", "V"}, {"_s", "s"}}};
 
-const std::pair<std::string_view, std::string_view>* EndingOf(std::string_view column) {
+const std::pair<std::string_view, std::string_view>* UnitEndingOf(std::string_view column) {
   for (const auto& ending : kEndings) {
     if (column.ends_with(ending.first)) return &ending;
   }
@@ -48,14 +48,14 @@ std::optional<SiUnit> InSi(const UnitSystem& units, const std::string& paper, in
 
 // The name of a table's column with another unit.
 std::string Renamed(const std::string& column, const std::string& unit) {
-  const auto* const ending = EndingOf(column);
+  const auto* const ending = UnitEndingOf(column);
   return column.substr(0, column.size() - ending->first.size()) + "_" + UnitInName(unit);
 }
 
 }  // namespace
 
 std::string PaperUnit(const std::string& run_column) {
-  const auto* const ending = EndingOf(run_column);
+  const auto* const ending = UnitEndingOf(run_column);
   return ending == nullptr ? "" : std::string(ending->second);
 }
 

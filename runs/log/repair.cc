@@ -65,7 +65,7 @@ std::string NoteOf(const RepairResult& result, const std::string& file) {
 }
 
 // Why the mended log ends where it does.
-std::string EndingOf(const LogVerdict& verdict) {
+std::string WhyItEnds(const LogVerdict& verdict) {
   if (verdict.completeness == Completeness::kWithoutChecksums) return "the original had no checksums";
   return verdict.found_end ? verdict.ending : "the original had no mark of the end";
 }
@@ -84,7 +84,7 @@ void WriteKept(const MappedFile& contents, const std::vector<KeptEvent>& kept, c
     writer.Append(event.channel, event.data, static_cast<size_t>(event.size), event.utime);
   }
   for (const std::string& remark : result.verdict.remarks) writer.Remark(remark);
-  writer.Finish(EndingOf(result.verdict));
+  writer.Finish(WhyItEnds(result.verdict));
 }
 
 // The error for a file in which there is no event at all: it is rather of another kind than damaged.
