@@ -12,7 +12,7 @@ constexpr double kQuietAfter = 0.05;  // s without a state, after which no answe
 }  // namespace
 
 LiveFeed::Stack::Stack(const Run& its_first, RunTable* all)
-    : runs(*all), id(its_first.id), run(all->Find(id)), intake(its_first.suffix, [this](int64_t) {
+    : runs(*all), id(its_first.id), run(all->Find(id)), run_builder(its_first.suffix, [this](int64_t) {
         if (!first) run = &runs.RestartLive(id);
         first = false;
         return run;
@@ -34,16 +34,17 @@ void LiveFeed::OnMessage(const bus::RawMessage& message) {
   const auto found = by_channel_.find(channel_);
   if (found == by_channel_.end()) {
     for (const auto& stack : stacks_) {
-      stack->intake.TakeOfLimb(limb_, message.channel, message.data, message.size, message.receive_utime);
+      stack->run_builder.TakeOfLimb(limb_, message.channel, message.data, message.size,
+                                    message.receive_utime);
     }
     return;
   }
   Stack& stack = *found->second;
   ++messages_;
-  stack.intake.Take(message.channel, message.data, message.size, message.receive_utime);
+  stack.run_builder.Take(message.channel, message.data, message.size, message.receive_utime);
   stack.run->messages->Add(
       {message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime},
-      stack.intake.now());
+      stack.run_builder.now());
 }
 
 void LiveFeed::Poll() {
@@ -51,11 +52,11 @@ void LiveFeed::Poll() {
     if (bus_.HandleUntil(clock_.Now()) == 0) break;
   }
   for (const auto& stack : stacks_) {
-    if (stack->intake.states() != stack->seen_states) {
-      stack->seen_states = stack->intake.states();
+    if (stack->run_builder.states() != stack->seen_states) {
+      stack->seen_states = stack->run_builder.states();
       stack->last_state = clock_.Now();
     } else if (SilentFor(*stack) > kQuietAfter) {
-      stack->intake.Flush();
+      stack->run_builder.Flush();
     }
     Run& run = *stack->run;
     const double oldest = run.last_time() - history_s_;
@@ -76,17 +77,18 @@ double LiveFeed::silent_s(uint32_t run) const {
 
 int64_t LiveFeed::states() const {
   return std::accumulate(stacks_.begin(), stacks_.end(), int64_t{0},
-                         [](int64_t sum, const auto& stack) { return sum + stack->intake.states(); });
+                         [](int64_t sum, const auto& stack) { return sum + stack->run_builder.states(); });
 }
 
 int64_t LiveFeed::undecodable() const {
-  return std::accumulate(stacks_.begin(), stacks_.end(), int64_t{0},
-                         [](int64_t sum, const auto& stack) { return sum + stack->intake.undecodable(); });
+  return std::accumulate(stacks_.begin(), stacks_.end(), int64_t{0}, [](int64_t sum, const auto& stack) {
+    return sum + stack->run_builder.undecodable();
+  });
 }
 
 int64_t LiveFeed::foreign() const {
   return std::accumulate(stacks_.begin(), stacks_.end(), int64_t{0},
-                         [](int64_t sum, const auto& stack) { return sum + stack->intake.foreign(); });
+                         [](int64_t sum, const auto& stack) { return sum + stack->run_builder.foreign(); });
 }
 
 }  // namespace hydro::scope

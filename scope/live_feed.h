@@ -13,7 +13,7 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "scope/run_table.h"
-#include "scope/signals/intake.h"
+#include "scope/signals/run_builder.h"
 
 namespace hydro::scope {
 
@@ -45,7 +45,7 @@ class LiveFeed {
     const uint32_t id;  // of its live run
     Run* run;
     bool first = true;
-    Intake intake;
+    RunBuilder run_builder;
     int64_t seen_states = 0;
     bus::Clock::TimePoint last_state{};
   };

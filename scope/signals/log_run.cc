@@ -11,7 +11,7 @@
 #include "bus/channels.h"
 #include "runs/log/log_reader.h"
 #include "runs/recorded/channel_suffix.h"
-#include "scope/signals/intake.h"
+#include "scope/signals/run_builder.h"
 
 namespace hydro::scope {
 namespace {
@@ -48,7 +48,7 @@ class StackOfLog {
       : file_(std::move(file)), name_(std::move(name)), suffix_(std::move(suffix)), channels_(suffix_) {}
 
   const bus::Channels& channels() const { return channels_; }
-  Intake& intake() { return intake_; }
+  RunBuilder& run_builder() { return run_builder_; }
   std::vector<std::unique_ptr<Run>>& runs() { return runs_; }
 
  private:
@@ -65,7 +65,7 @@ class StackOfLog {
   const std::string suffix_;
   const bus::Channels channels_;
   std::vector<std::unique_ptr<Run>> runs_;
-  Intake intake_{suffix_, [this](int64_t) { return NextRun(); }};
+  RunBuilder run_builder_{suffix_, [this](int64_t) { return NextRun(); }};
 };
 
 // All joints of a limb, or the one stack that was chosen, and the suffix of the limb's own channels.
@@ -105,16 +105,16 @@ std::vector<std::unique_ptr<Run>> OpenLogRuns(const std::string& file, const std
   while (reader.Next(event)) {
     const auto stack = by_channel.find(event.channel);
     if (stack != by_channel.end()) {
-      stack->second->intake().Take(event.channel, event.data, event.size, event.utime);
+      stack->second->run_builder().Take(event.channel, event.data, event.size, event.utime);
       continue;
     }
     if (!limb_names.contains(event.channel)) continue;
     for (const auto& one : stacks)
-      one->intake().TakeOfLimb(of_limb, event.channel, event.data, event.size, event.utime);
+      one->run_builder().TakeOfLimb(of_limb, event.channel, event.data, event.size, event.utime);
   }
   std::vector<std::unique_ptr<Run>> runs;
   for (const auto& stack : stacks) {
-    stack->intake().Flush();
+    stack->run_builder().Flush();
     std::move(stack->runs().begin(), stack->runs().end(), std::back_inserter(runs));
   }
   if (runs.empty()) {

@@ -15,8 +15,8 @@
 #include "runs/recorded/senders.h"
 #include "runs/timing/timing_report.h"
 #include "runs/tracking.h"
+#include "tools/hydro_log/controller_replay.h"
 #include "tools/hydro_log/own_controller.h"
-#include "tools/hydro_log/own_replay.h"
 #include "tools/hydro_log/replay.h"
 
 namespace hydro::hydro_log {
@@ -213,7 +213,7 @@ int ReplayVerb::RunOurs(const runs::RunLog& log, const std::string& of) const {
 }
 
 int ReplayVerb::RunOwn(const runs::RunLog& log, const std::vector<std::string>& command) const {
-  OwnReplayRequest request;
+  ControllerReplayRequest request;
   request.command = command;
   request.role = role_.empty() ? OwnRoleOf(log) : role_;
   request.speed = speed_;
@@ -225,7 +225,7 @@ int ReplayVerb::RunOwn(const runs::RunLog& log, const std::vector<std::string>& 
                      (role_.empty() ? "; the log's configuration does not have one command of its own" : ""));
   }
   process::CatchStopSignals();
-  const OwnReplayResult result = ReplayOwn(log, request);
+  const ControllerReplayResult result = ReplayOwn(log, request);
   if (!result.failure) {
     return Print(command.front(), request.role == "pressure_ctrl" ? "motor commands" : "pressure commands",
                  result.replay);

@@ -1,4 +1,4 @@
-#include "tools/hydro_log/own_replay.h"
+#include "tools/hydro_log/controller_replay.h"
 
 #include <algorithm>
 #include <functional>
@@ -25,17 +25,17 @@ const bus::Channels kPlain;      // without a suffix, on a network of its own
 
 // One replay through a process. Command is the type of its answers.
 template <class Command>
-class OwnReplay {
+class ControllerReplay {
  public:
   using Commands = std::map<int64_t, Command>;
   using Before = std::function<void(bus::Bus&, int64_t tick)>;
 
-  OwnReplay(RecordedRun& run, Commands recorded, const OwnReplayRequest& request)
+  ControllerReplay(RecordedRun& run, Commands recorded, const ControllerReplayRequest& request)
       : run_(run), recorded_(std::move(recorded)), request_(request) {}
 
   // `before` sends what came before that state, and is called again when the state is sent again.
-  OwnReplayResult Run(const Before& before, std::optional<int64_t> gap) {
-    OwnReplayResult result;
+  ControllerReplayResult Run(const Before& before, std::optional<int64_t> gap) {
+    ControllerReplayResult result;
     const int64_t not_compared = CutAt(gap, recorded_);
     OwnController controller(run_.config(), run_.description(), request_.command, request_.role);
     controller.bus().Subscribe<Command>(
@@ -92,20 +92,20 @@ class OwnReplay {
 
   RecordedRun& run_;
   Commands recorded_, answers_;
-  const OwnReplayRequest& request_;
+  const ControllerReplayRequest& request_;
   int64_t plant_ = 0;  // session
 };
 
-OwnReplayResult ReplayPosition(const runs::RunLog& log, const OwnReplayRequest& request) {
+ControllerReplayResult ReplayPosition(const runs::RunLog& log, const ControllerReplayRequest& request) {
   auto recorded = ByTick(log.messages.Of<pressure_command_t>());
   if (recorded.empty()) throw InputError(log.file + ": found no pressure commands to compare with");
   RecordedRun run(log, request.role);
   CutFirstSample(run, recorded);
-  OwnReplay<pressure_command_t> replay(run, std::move(recorded), request);
+  ControllerReplay<pressure_command_t> replay(run, std::move(recorded), request);
   return replay.Run([](bus::Bus&, int64_t) {}, run.FirstGap());
 }
 
-OwnReplayResult ReplayPressure(const runs::RunLog& log, const OwnReplayRequest& request) {
+ControllerReplayResult ReplayPressure(const runs::RunLog& log, const ControllerReplayRequest& request) {
   const auto recorded = RecordedMotorCommands(log);
   const auto pressure_commands = ByTick(log.messages.Of<pressure_command_t>());
   RecordedRun run(log, request.role);
@@ -128,13 +128,13 @@ OwnReplayResult ReplayPressure(const runs::RunLog& log, const OwnReplayRequest& 
       bus.Publish(kPlain.Of<pressure_command_t>(), next->second);
     }
   };
-  OwnReplay<motor_command_t> replay(run, recorded, request);
+  ControllerReplay<motor_command_t> replay(run, recorded, request);
   return replay.Run(before, gap);
 }
 
 }  // namespace
 
-OwnReplayResult ReplayOwn(const runs::RunLog& log, const OwnReplayRequest& request) {
+ControllerReplayResult ReplayOwn(const runs::RunLog& log, const ControllerReplayRequest& request) {
   return request.role == "pressure_ctrl" ? ReplayPressure(log, request) : ReplayPosition(log, request);
 }
 

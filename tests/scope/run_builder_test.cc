@@ -1,4 +1,4 @@
-#include "scope/signals/intake.h"
+#include "scope/signals/run_builder.h"
 
 #include <gtest/gtest.h>
 
@@ -13,13 +13,13 @@
 namespace hydro::scope {
 namespace {
 
-class IntakeTest : public ::testing::Test {
+class RunBuilderTest : public ::testing::Test {
  protected:
   template <class Message>
   void Take(const std::string& channel, const Message& message) {
     const RecordedMessage recorded = Encoded(channel, message, utime_);
-    intake_.Take(recorded.channel, recorded.data.data(), static_cast<int>(recorded.data.size()),
-                 recorded.utime);
+    run_builder_.Take(recorded.channel, recorded.data.data(), static_cast<int>(recorded.data.size()),
+                      recorded.utime);
   }
   void State(int64_t tick, int64_t session = 7) {
     utime_ += 1000;
@@ -57,15 +57,16 @@ class IntakeTest : public ::testing::Test {
 
   int64_t utime_ = 1000000;
   std::vector<std::unique_ptr<scope::Run>> runs_;
-  Intake intake_{"", [this](int64_t) {
-                   runs_.push_back(std::make_unique<scope::Run>(0, "test", scope::Run::Kind::kLive, 100000));
-                   return runs_.back().get();
-                 }};
+  RunBuilder run_builder_{
+      "", [this](int64_t) {
+        runs_.push_back(std::make_unique<scope::Run>(0, "test", scope::Run::Kind::kLive, 100000));
+        return runs_.back().get();
+      }};
 };
 
 // Tests that every state of a recorded run becomes a row with its exact values, and that the commands stand
 // at their ticks.
-TEST_F(IntakeTest, TakesARun) {
+TEST_F(RunBuilderTest, TakesARun) {
   std::vector<state_t> states;
   std::vector<motor_command_t> commands;
   for (const RecordedMessage& message : Record(DemoConfig({"time.mode=lockstep", "time.duration_s=1"}))) {
@@ -76,9 +77,9 @@ TEST_F(IntakeTest, TakesARun) {
     if (message.channel == "HYDRO_MOTOR_COMMAND") {
       EXPECT_TRUE(Decoded(&commands.emplace_back(), message.data.data(), size));
     }
-    intake_.Take(message.channel, message.data.data(), size, message.utime);
+    run_builder_.Take(message.channel, message.data.data(), size, message.utime);
   }
-  intake_.Flush();
+  run_builder_.Flush();
   ASSERT_EQ(runs_.size(), 1u);
   const auto& run = *runs_[0];
   ASSERT_EQ(run.ticks.end(), states.size());
@@ -107,9 +108,9 @@ TEST_F(IntakeTest, TakesARun) {
 }
 
 // Tests that missing states are a gap, and repeated ones nothing.
-TEST_F(IntakeTest, Gaps) {
+TEST_F(RunBuilderTest, Gaps) {
   for (const int64_t tick : {0, 1, 2, 2, 1, 6, 7}) State(tick);
-  intake_.Flush();
+  run_builder_.Flush();
   EXPECT_EQ(runs_[0]->ticks.end(), 5u);
   EXPECT_EQ(Kinds(), (std::vector<std::string>{"gap"}));
   EXPECT_EQ(runs_[0]->events.At(1).text, "3 states missing");
@@ -118,7 +119,7 @@ TEST_F(IntakeTest, Gaps) {
 
 // Tests that ticks which a numbered record passes over without saying so are a gap (rows that were taken out
 // of an imported table), and those that a late plant says it has skipped are none.
-TEST_F(IntakeTest, MissingTicks) {
+TEST_F(RunBuilderTest, MissingTicks) {
   state_t state{};
   state.session = 7;
   for (const auto& [tick, skipped] :
@@ -135,7 +136,7 @@ TEST_F(IntakeTest, MissingTicks) {
 }
 
 // Tests that a fault is an event once, however often its message comes.
-TEST_F(IntakeTest, FaultsAreEventsOnce) {
+TEST_F(RunBuilderTest, FaultsAreEventsOnce) {
   State(0);
   Fault(0, true);
   Fault(0, true);
@@ -150,7 +151,7 @@ TEST_F(IntakeTest, FaultsAreEventsOnce) {
 
 // Tests that a fault whose message was lost is known from the list, and its end too: not at the first list
 // without it, which may have been sent before.
-TEST_F(IntakeTest, LostFaultsAreMadeGood) {
+TEST_F(RunBuilderTest, LostFaultsAreMadeGood) {
   State(0);
   ActiveFaults("stale_state limit");
   EXPECT_EQ(Kinds(), (std::vector<std::string>{"fault", "fault"}));
@@ -161,13 +162,13 @@ TEST_F(IntakeTest, LostFaultsAreMadeGood) {
 }
 
 // Tests that a plant that starts again begins a new run, and a second one beside it does not.
-TEST_F(IntakeTest, FollowsOnePlant) {
+TEST_F(RunBuilderTest, FollowsOnePlant) {
   for (int64_t tick = 0; tick < 10; ++tick) {
     State(tick);
     State(tick, 8);
   }
   EXPECT_EQ(runs_.size(), 1u);
-  EXPECT_EQ(intake_.foreign(), 10);
+  EXPECT_EQ(run_builder_.foreign(), 10);
   utime_ += 2000000;  // silence
   State(0, 8);
   ASSERT_EQ(runs_.size(), 2u);
@@ -176,7 +177,7 @@ TEST_F(IntakeTest, FollowsOnePlant) {
 }
 
 // Tests that after a stop the next plant need not wait, and that a stop sent many times is one event.
-TEST_F(IntakeTest, Stops) {
+TEST_F(RunBuilderTest, Stops) {
   State(0);
   stop_t stop{};
   stop.tick = 0;
@@ -189,7 +190,7 @@ TEST_F(IntakeTest, Stops) {
 }
 
 // Tests that reports make processes and channels known, and that made-up roles are bounded.
-TEST_F(IntakeTest, Reports) {
+TEST_F(RunBuilderTest, Reports) {
   State(0);
   loop_statistics_t statistics{};
   for (int i = 0; i < 1000; ++i) {
@@ -208,7 +209,7 @@ TEST_F(IntakeTest, Reports) {
 }
 
 // Tests that the largest and smallest numbers of foreign messages do no harm.
-TEST_F(IntakeTest, ExtremeNumbers) {
+TEST_F(RunBuilderTest, ExtremeNumbers) {
   constexpr int64_t kMost = std::numeric_limits<int64_t>::max();
   constexpr int64_t kLeast = std::numeric_limits<int64_t>::min();
   for (const int64_t number : {kMost, kLeast, int64_t{0}, kMost}) {
@@ -235,22 +236,22 @@ TEST_F(IntakeTest, ExtremeNumbers) {
     description.rate_hz = 1e-300;
     Take("HYDRO_RUN", description);
   }
-  intake_.Flush();
-  EXPECT_EQ(intake_.undecodable(), 0);
+  run_builder_.Flush();
+  EXPECT_EQ(run_builder_.undecodable(), 0);
   EXPECT_GT(runs_.back()->events.last(), 0u);
 }
 
 // Tests that what is no message is counted and left out.
-TEST_F(IntakeTest, Undecodable) {
+TEST_F(RunBuilderTest, Undecodable) {
   State(0);
   const uint8_t bytes[40] = {};
   for (const char* channel :
        {"HYDRO_STATE", "HYDRO_MOTOR_COMMAND", "HYDRO_ARM_REFERENCE", "HYDRO_FAULT", "HYDRO_RUN"}) {
-    intake_.Take(channel, bytes, sizeof bytes, 0);
-    intake_.Take(channel, bytes, 0, 0);
+    run_builder_.Take(channel, bytes, sizeof bytes, 0);
+    run_builder_.Take(channel, bytes, 0, 0);
   }
-  intake_.Take("ANOTHER", bytes, sizeof bytes, 0);
-  EXPECT_EQ(intake_.undecodable(), 10);
+  run_builder_.Take("ANOTHER", bytes, sizeof bytes, 0);
+  EXPECT_EQ(run_builder_.undecodable(), 10);
   EXPECT_EQ(runs_.size(), 1u);
 }
 

@@ -1,4 +1,4 @@
-#include "scope/signals/intake.h"
+#include "scope/signals/run_builder.h"
 
 #include <cmath>
 #include <utility>
@@ -16,12 +16,12 @@ constexpr double kLongestTime = 1e12;  // s
 
 }  // namespace
 
-Intake::Intake(const std::string& suffix, std::function<Run*(int64_t session)> next_run)
+RunBuilder::RunBuilder(const std::string& suffix, std::function<Run*(int64_t session)> next_run)
     : channels_(suffix),
       next_run_(std::move(next_run)),
       ticks_([this](double time, const PendingTicks::Row& row) { run_->ticks.Append(time, row.data()); }) {}
 
-void Intake::Take(std::string_view channel, const uint8_t* data, int size, int64_t utime) {
+void RunBuilder::Take(std::string_view channel, const uint8_t* data, int size, int64_t utime) {
   if (channel == channels_.Of<state_t>()) {
     Decoded(&state_, data, size) ? OnState(state_, utime) : void(++undecodable_);
   } else if (channel == channels_.Of<motor_command_t>()) {
@@ -38,12 +38,12 @@ void Intake::Take(std::string_view channel, const uint8_t* data, int size, int64
   }
 }
 
-double Intake::TimeOf(int64_t tick) const {
+double RunBuilder::TimeOf(int64_t tick) const {
   if (tick < 0 || run_ == nullptr || !(run_->rate_hz > 0)) return time_;
   return time_ + static_cast<double>(SaturatingDifference(tick, tick_)) / run_->rate_hz;
 }
 
-bool Intake::Follow(const state_t& state, int64_t utime) {
+bool RunBuilder::Follow(const state_t& state, int64_t utime) {
   // A plant that begins again under its old name is a log that is played again.
   const bool again = state.session == session_ && state.tick < tick_ && state.sequence < sequence_ &&
                      state.time < time_ - 0.5;
@@ -72,7 +72,7 @@ bool Intake::Follow(const state_t& state, int64_t utime) {
   return true;
 }
 
-void Intake::OnState(const state_t& state, int64_t utime) {
+void RunBuilder::OnState(const state_t& state, int64_t utime) {
   ++states_;
   if (!(std::abs(state.time) < kLongestTime) || !Follow(state, utime)) return;
   heard_utime_ = utime;
@@ -99,7 +99,7 @@ void Intake::OnState(const state_t& state, int64_t utime) {
 }
 
 // What a limb leaves out is not missing. The ends of a run and late ticks do not change the interval.
-void Intake::FollowSampling(int64_t ticks) {
+void RunBuilder::FollowSampling(int64_t ticks) {
   if (ticks == sample_ticks_ && ticks > 1 && run_->sample_ticks != ticks) {
     run_->sample_ticks = ticks;
     ++run_->revision;
@@ -107,7 +107,7 @@ void Intake::FollowSampling(int64_t ticks) {
   sample_ticks_ = ticks;
 }
 
-void Intake::OnReference(const arm_reference_t& reference) {
+void RunBuilder::OnReference(const arm_reference_t& reference) {
   if (run_ == nullptr) return;
   ticks_.Add(reference);
   const double t = TimeOf(reference.tick);

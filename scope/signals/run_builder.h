@@ -15,13 +15,13 @@
 
 namespace hydro::scope {
 
-class Intake {
+class RunBuilder {
  public:
   // `next_run` makes a new run for another plant session after the run before it has ended. It is also called
   // for the first run. The run that it returns must live until the next call.
-  Intake(const std::string& suffix, std::function<Run*(int64_t session)> next_run);
-  Intake(const Intake&) = delete;
-  Intake& operator=(const Intake&) = delete;
+  RunBuilder(const std::string& suffix, std::function<Run*(int64_t session)> next_run);
+  RunBuilder(const RunBuilder&) = delete;
+  RunBuilder& operator=(const RunBuilder&) = delete;
 
   // Takes a message as it was received, and ignores messages that do not belong to a stack with that suffix.
   // `utime` is its arrival in us.
@@ -50,7 +50,7 @@ class Intake {
   void OnReference(const arm_reference_t& reference);
   void FollowSampling(int64_t ticks);
 
-  // intake_events.cc
+  // run_builder_events.cc
   bool TakeRare(std::string_view channel, const uint8_t* data, int size, int64_t utime);
   void OnDescription(const run_description_t& description);
   void OnFault(const fault_t& fault);

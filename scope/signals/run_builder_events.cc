@@ -1,4 +1,4 @@
-// What an Intake makes of messages that are not sent at every tick.
+// What an RunBuilder makes of messages that are not sent at every tick.
 #include <algorithm>
 #include <hydro/messages.hpp>
 #include <sstream>
@@ -12,7 +12,7 @@
 #include "process/status.h"
 #include "runs/recorded/tuning_history.h"
 #include "scope/signals/decoded.h"
-#include "scope/signals/intake.h"
+#include "scope/signals/run_builder.h"
 
 namespace hydro::scope {
 namespace {
@@ -48,7 +48,7 @@ std::set<std::string> Words(const std::string& text) {
 
 }  // namespace
 
-bool Intake::TakeRare(std::string_view channel, const uint8_t* data, int size, int64_t utime) {
+bool RunBuilder::TakeRare(std::string_view channel, const uint8_t* data, int size, int64_t utime) {
   const auto take = [&]<class Message>(auto on_message, Message message) {
     if (channel != channels_.Of<Message>()) return false;
     if (!Decoded(&message, data, size)) {
@@ -69,8 +69,8 @@ bool Intake::TakeRare(std::string_view channel, const uint8_t* data, int size, i
          take([&](const run_description_t& m) { OnDescription(m); }, run_description_t{});
 }
 
-void Intake::TakeOfLimb(const bus::Channels& limb, std::string_view channel, const uint8_t* data, int size,
-                        int64_t utime) {
+void RunBuilder::TakeOfLimb(const bus::Channels& limb, std::string_view channel, const uint8_t* data,
+                            int size, int64_t utime) {
   if (run_ == nullptr) return;
   const auto take = [&]<class Message>(auto on_message, Message message) {
     if (channel != limb.Of<Message>()) return false;
@@ -89,7 +89,7 @@ void Intake::TakeOfLimb(const bus::Channels& limb, std::string_view channel, con
 }
 
 // A plant describes its run before it sends its first state.
-void Intake::OnDescription(const run_description_t& description) {
+void RunBuilder::OnDescription(const run_description_t& description) {
   if (session_ && description.session == session_) {
     run_->Describe(description);
   } else {
@@ -97,12 +97,12 @@ void Intake::OnDescription(const run_description_t& description) {
   }
 }
 
-void Intake::AddEvent(double t, std::string kind, const std::string& source, const std::string& code,
-                      const std::string& text) {
+void RunBuilder::AddEvent(double t, std::string kind, const std::string& source, const std::string& code,
+                          const std::string& text) {
   run_->events.Add({0, t, std::move(kind), Shown(source), Shown(code), Shown(text)});
 }
 
-void Intake::OnFault(const fault_t& fault) {
+void RunBuilder::OnFault(const fault_t& fault) {
   if (fault_sequence_.size() > 4 * kMostProcesses) fault_sequence_.clear();
   const auto [newest, is_new] = fault_sequence_.try_emplace(fault.session, fault.sequence);
   if (!is_new && fault.sequence <= newest->second) return;
@@ -119,7 +119,7 @@ void Intake::OnFault(const fault_t& fault) {
 
 // The list makes up for lost messages: a fault that it names and that is unknown here has begun, and a fault
 // that two lists in a row lack has ended.
-void Intake::OnActiveFaults(const active_faults_t& message) {
+void RunBuilder::OnActiveFaults(const active_faults_t& message) {
   if (active_.size() > kMostProcesses) return;
   const std::string role = Shown(message.role);
   const std::set<std::string> now = Words(message.codes);
@@ -144,7 +144,7 @@ void Intake::OnActiveFaults(const active_faults_t& message) {
   }
 }
 
-void Intake::OnStop(const stop_t& stop, int64_t utime) {
+void RunBuilder::OnStop(const stop_t& stop, int64_t utime) {
   if (stop.addressee != 0 && stop.addressee != session_) return;  // addressed to another run
   left_ = true;
   const std::string what = stop.source + ": " + stop.reason;
@@ -155,7 +155,7 @@ void Intake::OnStop(const stop_t& stop, int64_t utime) {
 }
 
 // The plant sends this when it decides, with the tick at which the change acts, and again once a second.
-void Intake::OnSettings(const tuned_settings_t& settings) {
+void RunBuilder::OnSettings(const tuned_settings_t& settings) {
   const bool certain =
       settings.stage == tuned_settings_t::DECIDED || settings.stage == tuned_settings_t::IN_FORCE;
   if (settings.session != session_ || !certain || (tuned_ && settings.version <= tuned_->version)) return;
@@ -167,13 +167,13 @@ void Intake::OnSettings(const tuned_settings_t& settings) {
   tuned_ = settings;
 }
 
-void Intake::OnTuningAnswer(const tuning_answer_t& answer) {
+void RunBuilder::OnTuningAnswer(const tuning_answer_t& answer) {
   if (answer.session != session_ || answer.accepted != 0 || answer.request == tuning_request_) return;
   tuning_request_ = answer.request;
   AddEvent(TimeOf(answer.tick), "tuning", "plant", "refused", answer.text);
 }
 
-void Intake::OnRearm(const rearm_t& rearm, int64_t utime) {
+void RunBuilder::OnRearm(const rearm_t& rearm, int64_t utime) {
   if (rearm.kind == rearm_t::REQUEST || rearm.session != session_) return;
   const std::string what = std::to_string(rearm.kind) + rearm.text;
   const bool repeated = what == last_rearm_ && SaturatingDifference(utime, last_rearm_utime_) < kRepeated;
@@ -184,7 +184,7 @@ void Intake::OnRearm(const rearm_t& rearm, int64_t utime) {
            rearm.kind == rearm_t::ACCEPTED ? "accepted" : "refused", rearm.text);
 }
 
-ProcessReport& Intake::Report(const std::string& role, const std::string& host) {
+ProcessReport& RunBuilder::Report(const std::string& role, const std::string& host) {
   const std::string key = Shown(role) + " on " + Shown(host);
   if (run_->processes.size() >= kMostProcesses && !run_->processes.contains(key)) return flood_;
   ProcessReport& report = run_->processes[key];
@@ -193,7 +193,7 @@ ProcessReport& Intake::Report(const std::string& role, const std::string& host) 
   return report;
 }
 
-void Intake::OnStatus(const process_status_t& status) {
+void RunBuilder::OnStatus(const process_status_t& status) {
   if (status.role == process::kLaunchRole) return;
   ProcessReport& report = Report(status.role, status.host);
   report.state = StateName(status);
@@ -201,7 +201,7 @@ void Intake::OnStatus(const process_status_t& status) {
   if (status.session == session_ && process::HasLeft(status)) left_ = true;
 }
 
-void Intake::OnStatistics(const loop_statistics_t& statistics) {
+void RunBuilder::OnStatistics(const loop_statistics_t& statistics) {
   if (statistics.whole_run != 0) return;  // it is the sum of the reports before it
   ProcessReport& report = Report(statistics.role, statistics.host);
   if (statistics.interval_s > 0)

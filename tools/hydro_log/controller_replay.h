@@ -12,14 +12,14 @@
 
 namespace hydro::hydro_log {
 
-struct OwnReplayRequest {
+struct ControllerReplayRequest {
   std::vector<std::string> command;  // a program and its arguments
   std::string role;                  // role whose commands are compared: pressure_ctrl or position_ctrl
   double speed = 0;                  // recorded seconds per wall second; 0: as fast as the controller answers
   std::chrono::steady_clock::duration limit = std::chrono::seconds(5);  // for each answer
 };
 
-struct OwnReplayResult {
+struct ControllerReplayResult {
   ReplayResult replay;
   std::optional<std::string> failure;  // it died, hung, or did not start, and when; `replay` is then empty
 };
@@ -27,7 +27,7 @@ struct OwnReplayResult {
 // Replays in lockstep: where the log has an answer to a state, the next state is sent only when the
 // controller's answer has arrived. The checks and the comparison are those of Replay(), which is for our own
 // controllers. Throws InputError, process::StartError, bus::BusError.
-OwnReplayResult ReplayOwn(const runs::RunLog& log, const OwnReplayRequest& request);
+ControllerReplayResult ReplayOwn(const runs::RunLog& log, const ControllerReplayRequest& request);
 
 // The name of the user's own program that had this role in the run; empty when our program had it.
 std::string OwnProgramOf(const runs::RunLog& log, const std::string& role);
