@@ -1,11 +1,10 @@
 #include "tune/live/tuned_values.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "base/number_text.h"
 #include "settings/quantity_keys.h"
@@ -14,69 +13,52 @@
 namespace hydro::tuning {
 namespace {
 
-struct Value {
-  std::string_view name;
-  double (*get)(const TunedValues&);
-  void (*set)(TunedValues&, double);
-};
-
-// At gives the value's place in a TunedValues.
-template <class At>
-constexpr Value Named(std::string_view name, At) {
-  return {name, [](const TunedValues& v) { return static_cast<double>(At{}(v)); },
-          [](TunedValues& v, double x) {
-            auto& place = At{}(v);
-            place = static_cast<std::remove_reference_t<decltype(place)>>(x);
-          }};
+// Calls visit(name, place) for each value, with its place in a TunedValues.
+template <class Values, class Visit>
+void ForEach(Values& v, const Visit& visit) {
+  visit("pressure.k_p", v.pressure.gains.k_p);
+  visit("pressure.k_v", v.pressure.gains.k_v);
+  visit("pressure.reference_feedforward", v.pressure.reference_feedforward);
+  visit("pressure.arm_speed_ratio", v.pressure.arm_speed_ratio);
+  visit("position.c1", v.position.c1);
+  visit("position.c2", v.position.c2);
+  visit("position.derivative_on_error", v.position.derivative_on_error);
+  visit("position.braking", v.braking);
+  visit("limits.pressure", v.limits.pressure_psi);
+  visit("limits.motor_speed", v.limits.motor_speed_rad_s);
+  visit("limits.arm_angle", v.limits.arm_angle_rad);
+  visit("limits.arm_torque", v.limits.arm_torque_in_lbf);
+  visit("noise.p1", v.noise.p1_psi);
+  visit("noise.p2", v.noise.p2_psi);
+  visit("noise.motor_angle", v.noise.motor_angle_rad);
+  visit("noise.motor_speed", v.noise.motor_speed_rad_s);
+  visit("noise.arm_angle", v.noise.arm_angle_rad);
+  visit("noise.arm_speed", v.noise.arm_speed_rad_s);
 }
 
-constexpr std::array kValues{
-    Named(
-        "pressure.k_p", [](auto& v) -> auto& { return v.pressure.gains.k_p; }),
-    Named(
-        "pressure.k_v", [](auto& v) -> auto& { return v.pressure.gains.k_v; }),
-    Named(
-        "pressure.reference_feedforward", [](auto& v) -> auto& { return v.pressure.reference_feedforward; }),
-    Named(
-        "pressure.arm_speed_ratio", [](auto& v) -> auto& { return v.pressure.arm_speed_ratio; }),
-    Named(
-        "position.c1", [](auto& v) -> auto& { return v.position.c1; }),
-    Named(
-        "position.c2", [](auto& v) -> auto& { return v.position.c2; }),
-    Named(
-        "position.derivative_on_error", [](auto& v) -> auto& { return v.position.derivative_on_error; }),
-    Named(
-        "position.braking", [](auto& v) -> auto& { return v.braking; }),
-    Named(
-        "limits.pressure", [](auto& v) -> auto& { return v.limits.pressure_psi; }),
-    Named(
-        "limits.motor_speed", [](auto& v) -> auto& { return v.limits.motor_speed_rad_s; }),
-    Named(
-        "limits.arm_angle", [](auto& v) -> auto& { return v.limits.arm_angle_rad; }),
-    Named(
-        "limits.arm_torque", [](auto& v) -> auto& { return v.limits.arm_torque_in_lbf; }),
-    Named(
-        "noise.p1", [](auto& v) -> auto& { return v.noise.p1_psi; }),
-    Named(
-        "noise.p2", [](auto& v) -> auto& { return v.noise.p2_psi; }),
-    Named(
-        "noise.motor_angle", [](auto& v) -> auto& { return v.noise.motor_angle_rad; }),
-    Named(
-        "noise.motor_speed", [](auto& v) -> auto& { return v.noise.motor_speed_rad_s; }),
-    Named(
-        "noise.arm_angle", [](auto& v) -> auto& { return v.noise.arm_angle_rad; }),
-    Named(
-        "noise.arm_speed", [](auto& v) -> auto& { return v.noise.arm_speed_rad_s; }),
-};
+// Today's name for one that may be an older log's.
+std::string PresentNameOf(const std::string& name) {
+  return name == "pressure.reference_feedforward_V_psi" ? "pressure.reference_feedforward"
+                                                        : settings::PresentName(name);
+}
 
-// Also finds the name used in older logs.
-const Value* Find(const std::string& name) {
-  const bool gain = name == "pressure.reference_feedforward_V_psi";
-  const std::string present = gain ? "pressure.reference_feedforward" : settings::PresentName(name);
-  for (const Value& value : kValues) {
-    if (value.name == present) return &value;
-  }
-  return nullptr;
+// Returns false when no value has that name.
+bool Set(const std::string& name, double value, TunedValues* values) {
+  bool found = false;
+  ForEach(*values, [&](std::string_view one, auto& place) {
+    if (one != name) return;
+    place = static_cast<std::remove_reference_t<decltype(place)>>(value);
+    found = true;
+  });
+  return found;
+}
+
+std::vector<double> OfTheLaws(const TunedValues& values) {
+  std::vector<double> all;
+  ForEach(values, [&](std::string_view name, double value) {
+    if (!name.starts_with("limits.") && !name.starts_with("noise.")) all.push_back(value);
+  });
+  return all;
 }
 
 // A limit may be infinite; a feed-forward may have either sign; nothing else is below 0.
@@ -100,23 +82,16 @@ TunedValues ValuesOf(const settings::StackConfig& config) {
           .noise = config.noise};
 }
 
-bool SameLaws(const TunedValues& a, const TunedValues& b) {
-  return std::all_of(kValues.begin(), kValues.end(), [&](const Value& value) {
-    const bool of_a_law = !value.name.starts_with("limits.") && !value.name.starts_with("noise.");
-    return !of_a_law || value.get(a) == value.get(b);
-  });
-}
+bool SameLaws(const TunedValues& a, const TunedValues& b) { return OfTheLaws(a) == OfTheLaws(b); }
 
 void Write(const TunedValues& values, tuned_settings_t* message) {
-  message->count = static_cast<int32_t>(kValues.size());
   message->names.clear();
   message->values.clear();
-  message->names.reserve(kValues.size());
-  message->values.reserve(kValues.size());
-  for (const Value& value : kValues) {
-    message->names.emplace_back(value.name);
-    message->values.push_back(value.get(values));
-  }
+  ForEach(values, [&](std::string_view name, double value) {
+    message->names.emplace_back(name);
+    message->values.push_back(value);
+  });
+  message->count = static_cast<int32_t>(message->names.size());
 }
 
 std::string Read(const tuned_settings_t& message, double k_2, TunedValues* values) {
@@ -125,11 +100,9 @@ std::string Read(const tuned_settings_t& message, double k_2, TunedValues* value
   if (message.names.size() != count || message.values.size() != count)
     return "names and values differ in number";
   for (size_t i = 0; i < count; ++i) {
-    const Value* value = Find(message.names[i]);
-    if (value == nullptr) return message.names[i] + ": not known to this version";
-    if (std::string wrong = WhatIsWrong(std::string(value->name), message.values[i]); !wrong.empty())
-      return wrong;
-    value->set(changed, message.values[i]);
+    const std::string name = PresentNameOf(message.names[i]);
+    if (!Set(name, message.values[i], &changed)) return message.names[i] + ": not known to this version";
+    if (std::string wrong = WhatIsWrong(name, message.values[i]); !wrong.empty()) return wrong;
   }
   changed.position.pressure_limit = changed.limits.arm_torque_in_lbf / k_2;
   *values = changed;
