@@ -17,7 +17,8 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
 
   int number() const { return number_; }
-  // Returns whether that succeeded: a shared file system may report only here that its disk is full.
+  // Closes it now, and returns whether that succeeded: a shared file system may report only here that its
+  // disk is full.
   bool Close() { return close(std::exchange(number_, -1)) == 0; }
 
  private:

@@ -132,7 +132,7 @@ std::string CaseInputs::Machine(const std::vector<Value>& values) const {
   return machine_varies_ ? settings::FormatModel(Changed(values, true)) : "";
 }
 
-// The machine is the case's model with changes of its own.
+// The model with the case's values. For the machine, it also has the changes that are the machine's own.
 model::ModelDescription CaseInputs::Changed(const std::vector<Value>& values, bool machine) const {
   model::ModelDescription model = model_;
   for (size_t i = 0; i < keys_.size(); ++i) {

@@ -10,7 +10,8 @@
 
 namespace hydro::diagnose {
 
-// Without changes: only other values of `base`, or nothing at all. A refinement may move these values too.
+// An estimated model that is to be proved. Without `changes`, only values of `base` differ from the given
+// model, or nothing does. A refinement may move the values of `base` too.
 struct Proposal : EstimatedModel {
   // When runs are held out in turn: the same model estimated without each of the context's runs, in their
   // order. Empty: `model` predicts all runs, although it has seen them.

@@ -76,8 +76,9 @@ size_t CountValid(const std::vector<double>& values);
 bool HaveOil(const std::vector<const RunData*>& runs);
 // Whether anything is ever commanded in one of the runs.
 bool AreDriven(const std::vector<const RunData*>& runs);
-// s: the duration of the shortest run, and the median time between successive samples of all.
+// The duration of the shortest run, s.
 double ShortestDuration(const std::vector<const RunData*>& runs);
+// The median time between successive samples of all runs, s.
 double SampleInterval(const std::vector<const RunData*>& runs);
 // The inputs of the actuator, without the motion of a driven shaft.
 model::Stimulus StimulusOf(const runs::MeasuredRun& run);

@@ -102,8 +102,6 @@ tables::Table RunStackInProcess(const StackSetup& setup) {
   return runs::ExportRun(recording.log());
 }
 
-// The stack as separate processes in real time.
-
 StackRunner SeparateProcesses(const std::string& program_folder, const std::string& folder) {
   // Two real-time stacks at once would compete for the processor.
   auto one_at_a_time = std::make_shared<std::mutex>();

@@ -1,4 +1,4 @@
-// A sine of one frequency.
+// A sine of one frequency, and one whose frequency changes.
 #include <algorithm>
 #include <cmath>
 
@@ -46,6 +46,7 @@ class Sine : public Trajectory {
   bool continuous_;
 };
 
+// A sine whose frequency changes linearly with time; its phase is continuous throughout.
 class Chirp : public Trajectory {
  public:
   Chirp(double offset, double amplitude, double first_hz, double last_hz, double start, double duration)
@@ -109,8 +110,6 @@ std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double fre
   RequireFinite("rate", 2 * M_PI * frequency_hz * amplitude);
   return std::make_unique<Sine>(offset, amplitude, frequency_hz, start, phase_rad);
 }
-
-// A sine whose frequency changes linearly with time; its phase is continuous throughout.
 
 std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double first_hz, double last_hz,
                                       double start, double duration) {

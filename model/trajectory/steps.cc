@@ -43,6 +43,7 @@ class Steps : public Trajectory {
   double max_;
 };
 
+// A square wave.
 class Square : public Trajectory {
  public:
   Square(double offset, double amplitude, double frequency_hz, double start)
@@ -95,8 +96,6 @@ std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps) {
   RequireIncreasing("step", steps);
   return std::make_unique<Steps>(initial, std::move(steps));
 }
-
-// A square wave.
 
 std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double frequency_hz, double start) {
   RequireFinite("offset", offset);

@@ -156,15 +156,15 @@ inline constexpr std::array<SignalName, 13> kSignals = {{
     {&MeasuredRun::bypass_valve, "bypass", nullptr, nullptr, nullptr, "1"},
 }};
 
-// The row of a signal. All that a MeasuredRun has are in the table.
+// A signal's row. Every signal of a MeasuredRun has one.
 constexpr const SignalName& RowOf(MeasuredSignal MeasuredRun::*signal) {
   size_t row = 0;
   while (kSignals[row].signal != signal) ++row;
   return kSignals[row];
 }
 
-// Its key in the sidecar of the run, which texts use as its name. Where a current is commanded, `current` is
-// the command and `voltage` was measured at the motor. Null: the sidecar has no key for it.
+// A signal's key in the sidecar of the run, which texts use as its name. Where a current is commanded,
+// `current` is the command and `voltage` was measured at the motor. Null: the sidecar has no key for it.
 inline const char* KeyIn(const MeasuredRun& run, const SignalName& name) {
   if (name.signal == &MeasuredRun::voltage && run.current_commands) return "current";
   if (name.signal == &MeasuredRun::motor_voltage) return run.current_commands ? "voltage" : nullptr;

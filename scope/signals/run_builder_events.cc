@@ -1,4 +1,4 @@
-// What an RunBuilder makes of messages that are not sent at every tick.
+// What a RunBuilder makes of messages that are not sent at every tick.
 #include <algorithm>
 #include <hydro/messages.hpp>
 #include <sstream>

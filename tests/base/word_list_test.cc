@@ -54,6 +54,4 @@ TEST(TextLines, Trims) {
 
 }  // namespace
 
-// Tests of text as lines.
-
 }  // namespace hydro

@@ -1,7 +1,6 @@
 #include "diagnose/hydro_diagnose.h"
 
 #include <gmock/gmock.h>
-#include <stdlib.h>
 
 #include <cmath>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "settings/model_file.h"
 #include "tests/diagnose/example_diagnosis.h"
 #include "tests/table1.h"
+#include "tests/temporary_folder.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -28,8 +28,6 @@ namespace fs = std::filesystem;
 class HydroDiagnoseTest : public ::testing::Test {
  protected:
   HydroDiagnoseTest() {
-    std::string pattern = ::testing::TempDir() + "/hydro_diagnose_XXXXXX";
-    folder_ = mkdtemp(pattern.data());
     Write("model.toml", settings::FormatModel({"Table 1", testing::Table1(), {}}));
     for (const char* stem : {"a", "b"}) {
       Write(stem + std::string(".csv"), Table(stem[0]));
@@ -40,7 +38,6 @@ class HydroDiagnoseTest : public ::testing::Test {
     request_.model = Path("model.toml");
     request_.folder = Path("out");
   }
-  ~HydroDiagnoseTest() override { fs::remove_all(folder_); }
 
   // A run whose pressures begin there.
   static std::string Table(int first) {
@@ -50,7 +47,7 @@ class HydroDiagnoseTest : public ::testing::Test {
     }
     return table;
   }
-  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string Path(const std::string& name) const { return folder_ / name; }
   void Write(const std::string& name, const std::string& text) const { std::ofstream(Path(name)) << text; }
   std::string Read(const std::string& name) const {
     std::ifstream in(Path(name), std::ios::binary);
@@ -109,7 +106,7 @@ class HydroDiagnoseTest : public ::testing::Test {
     return "no error";
   }
 
-  std::string folder_;
+  const TemporaryFolder folder_;
   DiagnoseRequest request_;
   model::ModelDescription model_;
   std::vector<runs::MeasuredRun> runs_, held_out_;
@@ -363,7 +360,7 @@ TEST_F(HydroDiagnoseTest, CheckRefusesWhatADiagnosisDoes) {
 
 // Tests that no report replaces what it was made from.
 TEST_F(HydroDiagnoseTest, KeepsItsInputs) {
-  request_.folder = folder_;
+  request_.folder = folder_.path();
   const std::string before = Read("model.toml");
   EXPECT_THAT(ErrorOf(request_), HasSubstr("model.toml"));
   EXPECT_EQ(Read("model.toml"), before);

@@ -1,11 +1,8 @@
-// Tests of how numbers and lists are written, and of the interval between samples.
+// Tests of how numbers and lists are written.
 #include <gtest/gtest.h>
-
-#include <vector>
 
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -45,15 +42,6 @@ TEST(WordList, NamesRuns) {
   EXPECT_EQ(RunsNamed({"a", "b"}), "runs a and b");
   EXPECT_EQ(RunsNamed({"run 5", "run 6"}), "run 5 and run 6");
   EXPECT_EQ(RunsNamed({"run 5", "b"}), "runs run 5 and b");
-}
-
-// Tests that a gap does not change the usual interval, and that recordings are taken together.
-TEST(MedianInterval, OfOneAndOfSeveralRecordings) {
-  const std::vector<double> slow = {0, 1, 2, 50};
-  const std::vector<double> fast = {0, 0.25, 0.5, 0.75, 1, 1.25};
-  EXPECT_EQ(runs::MedianInterval(slow), 1);
-  EXPECT_EQ(runs::MedianInterval(std::vector{&slow, &fast}), 0.25);
-  EXPECT_EQ(runs::MedianInterval(std::vector<double>{3}), 1);
 }
 
 }  // namespace

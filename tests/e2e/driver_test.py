@@ -111,7 +111,8 @@ class DriverRunTest(DriverCase):
         self.assertEqual(registers["edges"] // 2 * 2, (ticks + 1) // 2 * 2)
         self.assertIn(registers["writes"] - ticks, (3, 4, 5))
         self.assertEqual(registers["directions"], 1)
-        # The watchdog takes the voltage half a second after the run. That is no trip: no driver has the board.
+        # Half a second after the run the watchdog takes the voltage. It does not count that as a trip, because
+        # no driver has the board open then.
         self.assertEqual(registers["trips"], 0)
         self.assertEqual(registers["delayed_reads"], 4 * len(log.states))  # settle_ns, of the analog inputs only
         self.assert_zero(self.board, "complete run")

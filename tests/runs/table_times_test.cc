@@ -1,14 +1,16 @@
-// Times as recorders write them: repeated, rounded, rolled over, set, in bursts, and angles and commands of
-// few bits.
+// Times as recorders write them: repeated, rounded, rolled over, set, in bursts, how far apart, and angles
+// and commands of few bits.
 #include "runs/measured/table_times.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "base/number_text.h"
 #include "runs/measured/measured_run.h"
+#include "runs/measured/sample_times.h"
 #include "runs/measured/signal_columns.h"
 #include "tests/runs/log/log_fixture.h"
 
@@ -178,6 +180,15 @@ TEST_F(TableTimesTest, AnglesThatRollOver) {
   EXPECT_NEAR(degrees.motor_angle.values[299], 40 * 299 * M_PI / 180, 1e-6);
   const MeasuredRun speed = read(4096, "motor_speed = \"w\"\n");
   EXPECT_NEAR(speed.motor_speed.values[299], std::fmod(40.0 * 299, 4096), 1e-9);  // no angle
+}
+
+// Tests that a gap does not change the usual interval, and that recordings are taken together.
+TEST(MedianInterval, OfOneAndOfSeveralRecordings) {
+  const std::vector<double> slow = {0, 1, 2, 50};
+  const std::vector<double> fast = {0, 0.25, 0.5, 0.75, 1, 1.25};
+  EXPECT_EQ(MedianInterval(slow), 1);
+  EXPECT_EQ(MedianInterval(std::vector{&slow, &fast}), 0.25);
+  EXPECT_EQ(MedianInterval(std::vector<double>{3}), 1);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@
 namespace hydro::scope {
 namespace {
 
-// A temporary folder of the test's own.
+// Tests for which TMPDIR is a folder of their own.
 class SideWorkTest : public ::testing::Test {
  protected:
   SideWorkTest() { setenv("TMPDIR", folder_.path().c_str(), 1); }

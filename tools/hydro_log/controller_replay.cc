@@ -134,7 +134,7 @@ ControllerReplayResult ReplayPressure(const runs::RunLog& log, const ControllerR
 
 }  // namespace
 
-ControllerReplayResult ReplayOwn(const runs::RunLog& log, const ControllerReplayRequest& request) {
+ControllerReplayResult ReplayController(const runs::RunLog& log, const ControllerReplayRequest& request) {
   return request.role == "pressure_ctrl" ? ReplayPressure(log, request) : ReplayPosition(log, request);
 }
 

@@ -25,9 +25,9 @@ struct ControllerReplayResult {
 };
 
 // Replays in lockstep: where the log has an answer to a state, the next state is sent only when the
-// controller's answer has arrived. The checks and the comparison are those of Replay(), which is for our own
-// controllers. Throws InputError, process::StartError, bus::BusError.
-ControllerReplayResult ReplayOwn(const runs::RunLog& log, const ControllerReplayRequest& request);
+// controller's answer has arrived. The checks and the comparison are those of Replay(), which is for this
+// project's controllers. Throws InputError, process::StartError, bus::BusError.
+ControllerReplayResult ReplayController(const runs::RunLog& log, const ControllerReplayRequest& request);
 
 // The name of the user's own program that had this role in the run; empty when our program had it.
 std::string OwnProgramOf(const runs::RunLog& log, const std::string& role);

@@ -225,7 +225,7 @@ int ReplayVerb::RunOwn(const runs::RunLog& log, const std::vector<std::string>& 
                      (role_.empty() ? "; the log's configuration does not have one command of its own" : ""));
   }
   process::CatchStopSignals();
-  const ControllerReplayResult result = ReplayOwn(log, request);
+  const ControllerReplayResult result = ReplayController(log, request);
   if (!result.failure) {
     return Print(command.front(), request.role == "pressure_ctrl" ? "motor commands" : "pressure commands",
                  result.replay);

@@ -21,7 +21,7 @@
 
 namespace hydro::log {
 
-// A folder that is removed with everything in it.
+// Tests that write logs into a folder of their own, and may write a name again.
 class LogTest : public testing::Test {
  protected:
   LogTest() { AllowReplacing(); }  // tests write the same names again and again; new_file_test is about this
@@ -30,7 +30,8 @@ class LogTest : public testing::Test {
   std::string Path(const std::string& name) const { return folder_ / name; }
 
  private:
-  // In memory, because thousands of logs are written, each to the disk (new_file.h).
+  // In memory where possible: tests write thousands of logs, and each is forced to the disk
+  // (base/new_file.h).
   const TemporaryFolder folder_{TemporaryFolder::InMemory()};
 };
 
