@@ -597,6 +597,7 @@ MUTATIONS = [
     ),
     *_rows(
         "tune/live/tuned_values.cc",
-        ("tuning.same_laws", "return !of_a_law || value.get(a) == value.get(b);", "return of_a_law || value.get(a) == value.get(b);"),
+        ("tuning.same_laws", "if (!name.starts_with(\"limits.\") && !name.starts_with(\"noise.\"))",
+         "if (name.starts_with(\"limits.\") || name.starts_with(\"noise.\"))"),
     ),
 ]
