@@ -74,8 +74,9 @@ class RunChecklist {
         std::to_string(run_.samples()) + " in " + ShortNumber(seconds) + " s, one each " +
             ShortNumber(1e3 * interval) + " ms" +
             (even ? "" : ", but once none for " + ShortNumber(1e3 * longest) + " ms") +
-            (slow ? ": too slow for such a machine" + runs::TimeUnitHint(interval) : "") +
-            (fast ? ": faster than any recorder of such a machine; is the column in another unit?" : ""));
+            (slow ? ": too slow for such a machine" : "") +
+            (fast ? ": faster than any recorder of such a machine" : "") +
+            runs::TimeUnitHint(interval, run_.time_source.scale));
   }
 
   void AddSignal(const runs::SignalName& name) {

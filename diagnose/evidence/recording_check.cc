@@ -78,9 +78,9 @@ class Recorder {
       const bool follows = own != nullptr && shared != nullptr && !shared->mistakes.empty() &&
                            shared->gain > -kAlikeMistakes && own->Merit() <= shared->gain;
       if (follows) {
-        findings.push_back({r, shared->mistakes, shared->gain, TiedWith(r, *common)});
+        findings.push_back({r, shared->mistakes, TiedWith(r, *common)});
       } else if (own != nullptr && own->Merit() > ClearGain()) {
-        findings.push_back({r, own->mistakes, own->gain});
+        findings.push_back({r, own->mistakes});
       }
     }
     return findings;
@@ -108,8 +108,7 @@ class Recorder {
     if (time_is_up_()) return findings;
     const std::optional<size_t> best = ClearBest(trials);
     for (size_t r = 0; best && r < runs_.size(); ++r) {
-      if (trials[r][*best].gain > -kAlikeMistakes)
-        findings.push_back({r, factors[*best], trials[r][*best].gain});
+      if (trials[r][*best].gain > -kAlikeMistakes) findings.push_back({r, factors[*best]});
     }
     return findings;
   }

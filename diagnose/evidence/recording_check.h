@@ -16,7 +16,6 @@ namespace hydro::diagnose {
 struct RecordingFinding {
   size_t run = 0;
   std::vector<RecordingMistake> mistakes;
-  double gain = 0;  // of the log evidence
   // Other sets that explain the runs as well, with no more mistakes than these or with one more.
   std::vector<std::vector<RecordingMistake>> tied = {};
 };

@@ -111,8 +111,7 @@ void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const
   if (slow.empty()) return;
   remarks->push_back(RunsNamed(slow) + ": samples " + ShortNumber(longest, 3) +
                      " s apart are too slow for the model's fastest motion, whose time constant is " +
-                     ShortNumber(fastest, 2) + " s: what is as fast cannot be judged" +
-                     runs::TimeUnitHint(longest));
+                     ShortNumber(fastest, 2) + " s: what is as fast cannot be judged");
 }
 
 // Times what saturates the amplifier, eq. (1): controllers want more than they get, but hardly this much.

@@ -314,23 +314,6 @@ void CheckGaps(const runs::MeasuredRun& run) {
              " } in the sidecar; where they come in stretches, make a table of each");
 }
 
-// Refuses samples so close that their times must be in another unit, and names it where one is likely.
-void RequirePossibleSamples(const runs::MeasuredRun& run) {
-  constexpr double kFastestUsual = 2e-5, kSlowestUsual = 0.1;  // s
-  const double interval = runs::MedianInterval(run.time);
-  if (interval >= runs::kFastestSamples) return;
-  std::string hint = ": is the column in another unit?";
-  for (const auto& [unit, size] : {std::pair("s", 1.0), std::pair("ms", 1e-3), std::pair("us", 1e-6)}) {
-    const double meant = interval / run.time_source.scale * size;
-    if (meant < kFastestUsual || meant > kSlowestUsual) continue;
-    hint = std::string(" (is the column in ") + unit + "? unit = \"" + unit + "\")";
-    break;
-  }
-  Refuse(run.file, "time", "rows " + ShortNumber(interval) + " s apart",
-         "at least " + ShortNumber(runs::kFastestSamples) + " s: no recorder of such a machine is faster" +
-             hint);
-}
-
 }  // namespace
 
 void RequireArmInStroke(const runs::MeasuredRun& run, const model::ModelDescription& model) {
@@ -358,8 +341,7 @@ void CheckUsable(const runs::MeasuredRun& run) {
 
 RunData PrepareRun(runs::MeasuredRun run, const model::ModelDescription& model) {
   CheckUsable(run);
-  runs::RequireFastSamples(run);
-  RequirePossibleSamples(run);
+  runs::RequirePossibleSamples(run);
   RequireArmInStroke(run, model);
   RunData data;
   data.name = run.name;

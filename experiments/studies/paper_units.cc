@@ -28,7 +28,7 @@ RunAndModel ReadRunAndModel(const std::string& file) {
   // Only the log says whether its arm is linear, so a log in other units is read twice.
   const UnitSystem ours{.linear_arm = run.units.linear_arm};
   if (run.units != ours) run = runs::ReadMeasuredRun(file, ours);
-  runs::RequireFastSamples(run);
+  runs::RequirePossibleSamples(run);
   model::ModelDescription model = run.model_text.empty()
                                       ? ShippedModel("table1")
                                       : settings::ParseModel(run.model_text, run.file + " (model)");

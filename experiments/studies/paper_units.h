@@ -25,7 +25,7 @@ struct RunAndModel {
 };
 
 // Reads the run that an experiment is to analyse. Throws InputError as ReadMeasuredRun and
-// RequireFastSamples.
+// RequirePossibleSamples.
 RunAndModel ReadRunAndModel(const std::string& file);
 
 }  // namespace hydro::experiments

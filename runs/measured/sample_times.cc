@@ -58,23 +58,28 @@ double MedianInterval(const std::vector<const std::vector<double>*>& times) {
 
 double MedianInterval(const std::vector<double>& time) { return MedianInterval(std::vector{&time}); }
 
-std::string TimeUnitHint(double interval) {
+std::string TimeUnitHint(double interval, double scale) {
   constexpr double kFastestUsual = 2e-5, kSlowestUsual = 0.1;  // s
-  if (interval <= kSlowestSamples) return "";
-  for (const auto& [unit, size] : {std::pair("ms", 1e-3), std::pair("us", 1e-6), std::pair("ns", 1e-9)}) {
-    if (interval * size < kFastestUsual || interval * size > kSlowestUsual) continue;
+  if (interval >= kFastestSamples && interval <= kSlowestSamples) return "";
+  for (const auto& [unit, size] :
+       {std::pair("s", 1.0), std::pair("ms", 1e-3), std::pair("us", 1e-6), std::pair("ns", 1e-9)}) {
+    const double meant = interval / scale * size;
+    if (meant < kFastestUsual || meant > kSlowestUsual) continue;
     return std::string(" (is the column in ") + unit + "? unit = \"" + unit + "\")";
   }
-  return "";
+  return " (is the column in another unit?)";
 }
 
-void RequireFastSamples(const MeasuredRun& run) {
+void RequirePossibleSamples(const MeasuredRun& run) {
   if (run.samples() < 2) return;
   const double interval = MedianInterval(run.time);
-  if (interval <= kSlowestSamples) return;
-  throw InputError(run.file + ": time: found rows " + ShortNumber(interval) + " s apart, allowed at most " +
-                   ShortNumber(kSlowestSamples) + " s: slower ones show no motion of such a machine" +
-                   TimeUnitHint(interval));
+  const bool slow = interval > kSlowestSamples;
+  if (!slow && interval >= kFastestSamples) return;
+  throw InputError(
+      run.file + ": time: found rows " + ShortNumber(interval) + " s apart, allowed " +
+      (slow ? "at most " + ShortNumber(kSlowestSamples) + " s: slower ones show no motion of such a machine"
+            : "at least " + ShortNumber(kFastestSamples) + " s: no recorder of such a machine is faster") +
+      TimeUnitHint(interval, run.time_source.scale));
 }
 
 }  // namespace hydro::runs

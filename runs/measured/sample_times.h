@@ -28,11 +28,13 @@ inline constexpr double kFastestSamples = 5e-6;
 // s between samples. Slower recorders do not show the motion of such a machine.
 inline constexpr double kSlowestSamples = 0.25;
 
-// The unit in which a time column may be whose samples are that many s apart, as a text for people: " (is the
-// column in us? unit = \"us\")". Empty where no unit makes the samples fit such a machine.
-std::string TimeUnitHint(double interval);
+// The unit in which a time column may be whose samples are `interval` s apart when it is read in units of
+// `scale` s, as a text for people: " (is the column in us? unit = \"us\")". Empty where the samples fit such
+// a machine as they stand; a question without a unit where they fit in none.
+std::string TimeUnitHint(double interval, double scale);
 
-// Throws InputError, with that hint, when half of the run's samples are farther apart than kSlowestSamples.
-void RequireFastSamples(const MeasuredRun& run);
+// Throws InputError, with that hint, when half of the run's samples are farther apart than kSlowestSamples or
+// closer together than kFastestSamples.
+void RequirePossibleSamples(const MeasuredRun& run);
 
 }  // namespace hydro::runs

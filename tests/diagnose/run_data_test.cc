@@ -241,14 +241,18 @@ TEST(PrepareRun, StartOfWhatIsNotMeasured) {
 }
 
 // Tests that of times in a unit that nobody stated the one is named in which the samples are those of such a
-// machine, and none where none is, or where they are so as they stand.
+// machine, none where none is, and that there is no question where they are so as they stand.
 TEST(PrepareRun, NamesTheUnitOfTimes) {
   for (const auto& [interval, unit] : {std::pair(1.0, "ms"), std::pair(10.0, "ms"), std::pair(1e3, "us"),
                                        std::pair(2e4, "us"), std::pair(1e6, "ns"), std::pair(2e7, "ns")}) {
-    EXPECT_EQ(runs::TimeUnitHint(interval),
+    EXPECT_EQ(runs::TimeUnitHint(interval, 1),
               std::string(" (is the column in ") + unit + "? unit = \"" + unit + "\")");
   }
-  for (const double interval : {1e-3, 0.2, 1e12}) EXPECT_EQ(runs::TimeUnitHint(interval), "");
+  for (const double interval : {1e-3, 0.2}) EXPECT_EQ(runs::TimeUnitHint(interval, 1), "");
+  EXPECT_EQ(runs::TimeUnitHint(1e12, 1), " (is the column in another unit?)");
+  // Microseconds that a sidecar calls milliseconds, and seconds that it calls microseconds.
+  EXPECT_EQ(runs::TimeUnitHint(1, 1e-3), " (is the column in us? unit = \"us\")");
+  EXPECT_EQ(runs::TimeUnitHint(1e-9, 1e-6), " (is the column in s? unit = \"s\")");
 }
 
 // Tests that data from which nothing can be learnt are refused with run, signal and row.
