@@ -29,4 +29,6 @@ function(lcm_wrap_cpp target)
                                                         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hydro>)
   install(FILES ${headers} ${out}/hydro/messages.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hydro/hydro COMPONENT development)
   target_link_libraries(${target} INTERFACE PkgConfig::LCM)
+  # The decoding is inlined into the user's code, so the user needs the option that the top CMakeLists.txt explains.
+  target_compile_options(${target} INTERFACE $<INSTALL_INTERFACE:-fno-strict-aliasing>)
 endfunction()
