@@ -80,21 +80,25 @@ GridSignal OnGrid(const RunData& run, size_t which, double step, size_t count) {
   return grid;
 }
 
-// The command that is held from each instant to the next; where the grid is coarser than the recording, its
-// mean.
-std::vector<double> HeldOnGrid(const RunData& run, double step, size_t every, size_t count) {
+// The mean of the command from each instant of the grid to the next. A row's command acts until the next row,
+// whose time is seldom quite the grid's: clocks run 20 millionths fast, and times since 1970 are rounded.
+std::vector<double> HeldOnGrid(const RunData& run, double step, size_t count) {
+  constexpr double kSameInstant = 1e-6;  // of a step
   std::vector<double> held(count);
   const std::vector<double>& time = run.stimulus.time;
-  size_t at = 0;
+  size_t row = 0;
   for (size_t k = 0; k < count; ++k) {
-    double sum = 0;
-    for (size_t i = 0; i < every; ++i) {
-      const double t = time.front() +
-                       (static_cast<double>(k) + static_cast<double>(i) / static_cast<double>(every)) * step;
-      while (at + 1 < time.size() && time[at + 1] <= t + 1e-6 * step) ++at;
-      sum += run.stimulus.voltage[at];
+    const double end = time.front() + static_cast<double>(k + 1) * step;
+    double from = time.front() + static_cast<double>(k) * step, held_for = 0;
+    for (; from < end - kSameInstant * step; ++row) {
+      const double until = row + 1 < time.size() ? std::min(time[row + 1], end) : end;
+      if (until > from + kSameInstant * step) {
+        held_for += until - from;
+        held[k] += (run.stimulus.voltage[row] - held[k]) * ((until - from) / held_for);
+        from = until;
+      }
+      if (until == end) break;
     }
-    held[k] = sum / static_cast<double>(every);
   }
   return held;
 }
@@ -316,7 +320,7 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given, const Rea
       static_cast<size_t>(std::floor((time.back() - time.front()) / motion.step * (1 + 1e-9))) + 1;
   motion.stride =
       std::max<size_t>(1, static_cast<size_t>(std::floor(kBalanceStep / motion.step * (1 + 1e-9))));
-  motion.voltage = HeldOnGrid(run, motion.step, as.every, count);
+  motion.voltage = HeldOnGrid(run, motion.step, count);
   motion.around = AroundOnGrid(run.stimulus, motion.step, count);
   for (size_t s = 0; s < kGridChannels; ++s) {
     motion.signals[s] = OnGrid(run, s, motion.step, count);

@@ -193,7 +193,8 @@ TEST(RunMotion, LongRecordingsAreReadInPart) {
     highest = std::max(highest, at.p1);
   }
   for (size_t k = 50; k + 50 < half.size(); k += 50) {
-    EXPECT_EQ(half.at[k].voltage, 0.5 * (whole.at[2 * k].voltage + whole.at[2 * k + 1].voltage));
+    // Weighted by the rows' times, which are rounded.
+    EXPECT_NEAR(half.at[k].voltage, 0.5 * (whole.at[2 * k].voltage + whole.at[2 * k + 1].voltage), 1e-9);
     EXPECT_NEAR(half.at[k].p1, whole.at[2 * k].p1, 0.02 * (highest - lowest));
   }
 

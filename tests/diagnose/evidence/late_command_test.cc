@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <numbers>
 #include <string>
 
@@ -128,6 +130,21 @@ TEST(LateCommand, IsMeasuredInRows) {
     const LateCommand found = FindLateCommand(Table1With(), Recorded({.step = 1e-3, .seed = 6}, rows), 0, 1);
     EXPECT_NEAR(found.rows, rows, 0.15 + 2 * found.error) << rows;
     EXPECT_LT(found.error, 0.2) << rows;
+  }
+}
+
+// Tests that times as clocks give them move no command: those of a clock that is 20 millionths fast, in whole
+// microseconds, and seconds since 1970, which a double holds to a quarter of a microsecond.
+TEST(LateCommand, IsNotOneOfAnOrdinaryClock) {
+  const auto fast = [](double t) { return 1e-6 * std::round(1e6 * 1.00002 * t); };
+  const auto since_1970 = [](double t) { return 1767225600.25 + t; };
+  for (const std::function<double(double)>& clock : {std::function<double(double)>(fast), {since_1970}}) {
+    for (const int rows : {0, 1}) {
+      std::vector<runs::MeasuredRun> runs = Recorded({.step = 1e-3, .seed = 7}, rows);
+      for (runs::MeasuredRun& run : runs) std::ranges::transform(run.time, run.time.begin(), clock);
+      const LateCommand found = FindLateCommand(Table1With(), runs, 0, 1);
+      EXPECT_NEAR(found.rows, rows, 0.15 + 2 * found.error);
+    }
   }
 }
 
