@@ -6,6 +6,13 @@
 #include <cmath>
 
 namespace hydro::plant {
+namespace {
+
+// Whether a command of that status may move the motor. A loop that says that it is at a safe output, or what
+// nobody knows, moves nothing, whatever its voltage.
+bool Drives(int8_t status) { return status == motor_command_t::LAW || status == motor_command_t::OPEN_LOOP; }
+
+}  // namespace
 
 MotorCommands::MotorCommands(process::Participant& participant, const settings::StackConfig& config,
                              OutputSafety& safety, const RollCall& roll_call, int64_t ticks_ahead)
@@ -48,7 +55,10 @@ void MotorCommands::OnMotorCommand(const motor_command_t& command) {
   const auto verdict = monitor_.Observe(command.session, command.sequence, command.tick, now);
   // A duplicate is neither obeyed nor a sign of life.
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
-  if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;  // CheckSenders() raises the fault
+  if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) {  // CheckSenders() raises the fault
+    second_heard_ = Senders{monitor_.session(), command.session};
+    return;
+  }
   if (verdict == bus::SequenceMonitor::Verdict::kRestarted) {
     // No command of the previous sender acts any more, neither one that waits nor the one in force: the
     // voltage is zero until the new sender's own commands act.
@@ -114,12 +124,13 @@ void MotorCommands::TakeEffect() {
   const int64_t newest_allowed = tick_ - delay_;
   while (!waiting_.empty() && waiting_.front().tick <= newest_allowed) {
     command_ = waiting_.front();
+    if (!Drives(command_->status)) command_->voltage = 0;
     waiting_.pop_front();
   }
 }
 
 const motor_command_t* MotorCommands::Obeyed(bool held) {
-  if (held) obeyed_from_ = tick_;
+  if (held) obeyed_from_ = std::max(obeyed_from_, tick_);
   // The run may have ended since this tick began.
   const bool obeys = !held && command_ && command_->tick >= obeyed_from_ && !participant_.stop();
   return obeys ? &*command_ : nullptr;
@@ -128,7 +139,7 @@ const motor_command_t* MotorCommands::Obeyed(bool held) {
 bool MotorCommands::AllIsWell(bus::Clock::TimePoint now) const {
   const double voltage = command_ ? command_->voltage : 0;
   if (!(std::fabs(voltage) <= voltage_limit_) || future_command_) return false;
-  if (monitor_.SecondSenderAlive(now)) return false;
+  if (monitor_.SecondSenderAlive(now) || second_heard_) return false;
   return !realtime_ || (AgeOfAnswer() <= stale_time_ && !slept_ && repeated_.IsQuiet(monitor_.duplicates()));
 }
 
@@ -170,12 +181,14 @@ void MotorCommands::CheckSenders(bus::Clock::TimePoint now) {
   using Finding = OutputSafety::Finding;
   // The sender contradicts itself, so the command before this one is no more trustworthy.
   safety_.Set(Cause::kFutureCommand, future_command_, [] { return Finding{}; });
-  safety_.Set(Cause::kSecondCommandSender, monitor_.SecondSenderAlive(now), [&] {
-    return Finding{
-        fmt::format("two processes send motor commands: {} and {}; allowed is one",
-                    participant_.NameOf(monitor_.session()), participant_.NameOf(monitor_.second_session())),
-        2, 1};
+  // In lockstep a tick may wait for longer than a sender counts as alive.
+  safety_.Set(Cause::kSecondCommandSender, monitor_.SecondSenderAlive(now) || second_heard_, [&] {
+    const auto [one, other] = second_heard_.value_or(Senders{monitor_.session(), monitor_.second_session()});
+    return Finding{fmt::format("two processes send motor commands: {} and {}; allowed is one",
+                               participant_.NameOf(one), participant_.NameOf(other)),
+                   2, 1};
   });
+  second_heard_.reset();
 }
 
 void MotorCommands::CheckFresh() {

@@ -69,6 +69,9 @@ class MotorCommands {
   int64_t lost() const { return monitor_.lost(); }
 
  private:
+  struct Senders {
+    std::optional<int64_t> followed, other;  // sessions
+  };
   struct Sleep {
     int64_t woke;  // tick
     double seconds;
@@ -98,8 +101,9 @@ class MotorCommands {
   bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   bus::SequenceMonitor monitor_;
   process::CountedWarning repeated_{"repeated_motor_command"};
-  bool future_command_ = false;  // the newest command is for a tick that has not come yet
-  std::optional<Sleep> slept_;   // real time: the last long one, until a command answers a later state
+  bool future_command_ = false;          // the newest command is for a tick that has not come yet
+  std::optional<Senders> second_heard_;  // since the last check
+  std::optional<Sleep> slept_;  // real time: the last long one, until a command answers a later state
   timing::RoundTripMonitor round_trips_;
   RingQueue<motor_command_t> waiting_;      // received but not yet in force, by tick
   std::optional<motor_command_t> command_;  // in force

@@ -39,7 +39,7 @@ TORTURE_MUTATIONS = [
            ("future.obeyed", "if (command.tick > tick_ && !monitor", "if (false && !monitor"),
            ("restart.old_command_acts_on", "    waiting_.clear();\n    command_.reset();", "    waiting_.clear();"),
            ("refused.still_acts", "if (command_ && command_->session == session) command_.reset();", ""),
-           ("hold.old_command_returns", "obeyed_from_ = tick_;", "obeyed_from_ = 0;"),
+           ("hold.old_command_returns", "if (held) obeyed_from_ = std::max(obeyed_from_, tick_);", ""),
            ("stop.drives_on", "command_->tick >= obeyed_from_ && !participant_.stop()", "command_->tick >= obeyed_from_"),
            ("stale.never", "safety_.Set(Cause::kStaleCommand, age > stale_time_,", "safety_.Set(Cause::kStaleCommand, false,"),
            ("late.never", "safety_.Set(Cause::kLatePlant, slept_.has_value(),",

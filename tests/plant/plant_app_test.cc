@@ -390,6 +390,22 @@ TEST_F(PlantAppTest, CommandSentBesideAnotherNeverActs) {
   EXPECT_EQ(states_.back().voltage, 1);
 }
 
+// Tests that in lockstep, too, senders that come in turn are named, although each has been silent for long
+// when the tick is checked.
+TEST_F(PlantAppTest, SendersInTurnAreNamed) {
+  on_state_ = [&](const state_t& s) {
+    if (s.tick % 5 == 0) SendPressureCommand(s.tick);
+    SendVoltage(s.tick, 1.0, std::max<int64_t>(s.tick, 20));
+  };
+  EXPECT_EQ(Run(SmallStack()), 0);
+  ASSERT_EQ(states_.back().tick, 100);
+  for (const state_t& s : states_) EXPECT_EQ(s.voltage, s.tick < 2 || s.tick > 21 ? 0 : 1) << s.tick;
+  ASSERT_FALSE(faults_.empty());
+  EXPECT_EQ(faults_[0].code, "second_motor_command_sender");
+  EXPECT_THAT(faults_[0].text, HasSubstr("session 20"));
+  EXPECT_THAT(faults_[0].text, HasSubstr("session 21"));
+}
+
 // Tests that a command from the future, as a played log would send, is refused.
 TEST_F(PlantAppTest, FutureCommandIsRefused) {
   settings::StackConfig config = SmallStack();

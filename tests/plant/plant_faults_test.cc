@@ -505,6 +505,21 @@ TEST_F(PlantFaultsTest, SafeCommand) {
   EXPECT_THAT(failure_, HasSubstr("controller_fault"));
 }
 
+// Tests that volts of a command that says that it is safe, the last, or of no known kind are not put out.
+TEST_F(PlantFaultsTest, VoltsOfASafeCommand) {
+  for (const int8_t status : {motor_command_t::SAFE, motor_command_t::STOPPED, int8_t{99}}) {
+    StartAgain();
+    on_state_ = [&](const state_t& s) {
+      answering_ = s.tick < 40 || s.tick > 60;
+      if (!answering_) Answer(s.tick, 5, status);
+    };
+    EXPECT_EQ(Run(), 0);
+    ExpectVoltage(5, 41, 1.5);
+    ExpectVoltage(42, 62, 0);
+    ExpectVoltage(63, 100, 1.5);
+  }
+}
+
 // Tests that a fault of the position loop is latched too, that it persists until the loop ends it or is
 // replaced, and that a warning is not latched.
 TEST_F(PlantFaultsTest, FaultOfThePositionLoop) {
