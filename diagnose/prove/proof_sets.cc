@@ -21,6 +21,12 @@ constexpr size_t kMostNumbersTimesSamples = 200000;
 // How many sets are made by removing one of their effects: enough for two leading sets with three effects,
 // and what remains of them.
 constexpr size_t kMostMade = 10;
+// By what factors a value that balances do not see may be off: steps from which a fit finds the way, since
+// the frequency of a spring changes by half as much, and that reach to kImplausible.
+constexpr double kRacedFactors[] = {0.5, 0.63, 0.8, 1.25, 1.6, 2};
+// Between them the value is searched in steps of the half size each: at a pressure at which a valve opens,
+// the gap has a bend that no derivative passes.
+constexpr double kFirstStep = 1.12, kLastStep = 1.005;
 
 }  // namespace
 
@@ -223,6 +229,61 @@ size_t ProofSets::Without(size_t with, const Change& change, Values values) {
 
 void ProofSets::Race(size_t from, const Change& change) {
   Push(RacedFrom(context_, fitted_, windows_, sets_[from], change));
+}
+
+bool ProofSets::IsSeenByBalances(size_t base) const {
+  const double known = model::UncertaintyOf(context_.given, base);
+  return std::ranges::any_of(sets_, [&](const ProvedSet& set) {
+    if (set.hypothesis.measured == nullptr) return false;
+    const auto found = set.hypothesis.measured->deviation.find(base);
+    return found != set.hypothesis.measured->deviation.end() && found->second < 0.5 * known;
+  });
+}
+
+std::optional<ProvedSet> ProofSets::BestSingleValue() {
+  const ProvedSet given = sets_[kGiven];
+  std::optional<ProvedSet> best;
+  const auto scaled = [&](const Change& change, const ProvedSet& from, double factor) {
+    const size_t place = model::BasePlace(change.parameter);
+    ProvedSet one = from;
+    one.hypothesis.changes = {change};
+    one.hypothesis.base = {place};
+    one.hypothesis.model.parameters.*model::BaseParameters()[place].member *= factor;
+    JudgeSet(windows_, context_.jobs, &one);
+    if (PredictsBetter(one, best ? *best : given)) best = std::move(one);
+  };
+  for (const Change& change : context_.changes) {
+    if (!change.effect.empty()) continue;
+    const size_t place = model::BasePlace(change.parameter);
+    const bool none = context_.given.parameters.*model::BaseParameters()[place].member == 0;
+    if (none || IsSeenByBalances(place)) continue;
+    for (const double factor : kRacedFactors) {
+      if (!TimeIsUp(context_)) scaled(change, given, factor);
+    }
+  }
+  for (double step = kFirstStep; best && step > kLastStep && !TimeIsUp(context_); step = std::sqrt(step)) {
+    const ProvedSet middle = *best;
+    for (const double factor : {1 / step, step}) scaled(middle.hypothesis.changes.front(), middle, factor);
+  }
+  return best;
+}
+
+bool ProofSets::RaceValues() {
+  if (fitted_.empty()) return false;
+  std::optional<ProvedSet> best = BestSingleValue();
+  if (!best) return false;
+  RefineValues(context_, fitted_, windows_, kReportedValues, &*best);
+  if (TypicalGap(best->near) > kCloseEnough) {
+    const size_t raced = best->hypothesis.base.front();
+    for (const size_t place : allowed_) {
+      if (place != raced) best->hypothesis.base.push_back(place);
+    }
+    RefineValues(context_, fitted_, windows_, kComparedValues, &*best);
+  }
+  if (TypicalGap(best->near) > kCloseEnough) return false;
+  best->refined = true;
+  Push(std::move(*best));
+  return true;
 }
 
 size_t ProofSets::WithGivenValues(size_t place) {

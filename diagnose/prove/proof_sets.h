@@ -33,6 +33,12 @@ class ProofSets {
   void Refine(size_t place);
   // Adds a set with one more change, fitted from the catalogue's starts and judged.
   void Race(size_t from, const Change& change);
+  // Tries each base value that may differ and that balances do not see, alone and by large factors, refines
+  // the best of them, and adds it, or the same with all other values refined, if it leaves no more than
+  // noise. Returns whether there is one. A fit of all values at once seldom gets to one that is far off:
+  // where neither the oil's spring nor the pressure at which a valve opens shows in a balance, every other
+  // value tries to stand in for it.
+  bool RaceValues();
   // The place of the best set without the effect. The candidates include the same set without it, with
   // values as they are or refined, because values that were estimated with or without an effect may not suit
   // what is left. Only a few sets are made this way. Returns the number of sets where there is none.
@@ -64,6 +70,10 @@ class ProofSets {
   void BeginAtGivenValues(ProvedSet* set) const;
   void BeginAtBestValues(ProvedSet* set) const;
   void RefineOnWholeRuns(ProvedSet* set) const;
+  // The model as given with the one other value that predicts the windows best; nothing where none helps.
+  std::optional<ProvedSet> BestSingleValue();
+  // Whether the balances of some set say much more of this base value than the model does.
+  bool IsSeenByBalances(size_t base) const;
 
   const ProofContext& context_;
   const Hypothesis& as_given_;

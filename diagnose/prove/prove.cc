@@ -94,7 +94,7 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
   size_t best = chooser.Choice();
   if (chooser.LeavesAGap(best)) {
     context.Report("what balances cannot show", 0.91);
-    chooser.Race(best, blind);
+    if (!sets.RaceValues()) chooser.Race(best, blind);
     best = chooser.Choice();
   }
   best = chooser.OneNumberForManyValues(best);

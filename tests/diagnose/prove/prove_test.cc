@@ -60,6 +60,20 @@ TEST_F(ProveTest, OnlyWhatIsNeededIsRefittedWithout) {
   EXPECT_THAT(sets[chooser.Choice()].Effects(), ElementsAre(kDrag));
 }
 
+// Tests that a value that is far off and that no balance shows, such as the pressure at which the one-way
+// valves open, is said instead of an effect that is not there.
+TEST_F(ProveTest, AValueThatNoBalanceShows) {
+  model::ModelDescription truth = Table1With();
+  truth.parameters.p_3 *= 0.7;
+  Record(truth);
+  context_.changes.push_back({"", {}, "p_3"});
+  const Proof proved =
+      Prove({Proposed({}, {}), Proposed({kBias}, {Bias(0.02)})}, diagnose::BlindChanges(context_));
+  EXPECT_THAT(proved.Best().Effects(), IsEmpty());
+  EXPECT_NEAR(proved.Found().model.parameters.p_3, truth.parameters.p_3, 2);
+  EXPECT_LE(TypicalGap(proved.Best().near), diagnose::kCloseEnough);
+}
+
 // Tests that an estimate far from the truth does not make the refit worse than the model as given.
 TEST_F(ProveTest, RefitIsNeverWorse) {
   Record(Table1With({Drag(5e-5)}));
