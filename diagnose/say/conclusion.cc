@@ -113,10 +113,14 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   d.noise_shown = NoiseShown(context.runs);
   const double growth = proof.best == proof.given ? GrowthOver(context) : 1;
   d.verdict = VerdictOn(d, proof, proposed.scores, JudgedBy(context.runs, growth));
-  if (d.verdict == Verdict::kNothingMissing && proof.best != proof.given) {
-    // Other values that are not clearly different stay as given.
+  const bool values_alone = d.effects.empty() && d.closures.empty() && proof.best != proof.given;
+  const bool nothing_missing = d.verdict == Verdict::kNothingMissing;
+  const BeforeAfter gap = GapToCompare(d, proof).gap;
+  if (values_alone && (nothing_missing || (IsOpen(d.verdict) && !(gap.after < gap.before)))) {
+    // Other values that are not clearly different, or that take nothing of the gap, stay as given.
     Proof nothing = proof;
     nothing.best = proof.given;
+    nothing.given_suffices = nothing_missing;
     return Conclude(context, nothing, proposed);
   }
   HearBothWitnesses(proof, &d);

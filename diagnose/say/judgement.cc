@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/maths/spread.h"
+#include "base/number_text.h"
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/fit/intervals.h"
@@ -166,13 +167,17 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
 Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
                   const RunsJudged& runs) {
   const bool one_witness = HasOneWitness(d, scores);
-  // If a model leaves only noise, its other values are no finding, unless one of them has clearly changed.
-  const bool values = proof.OnWindows() && !proof.Found().Free().empty() &&
+  // If the model as given leaves only noise, other values are no finding, unless one of them has clearly
+  // changed.
+  const bool values = !proof.Found().Free().empty() &&
                       !(GapToCompare(d, proof).gap.before <= std::sqrt(kNoiseAndAsMuchAgain) * d.noise_shown);
-  const bool something = !d.effects.empty() || !d.parameters.empty() || !d.closures.empty() || values;
+  const bool changed = std::ranges::any_of(d.parameters, [](const ChangedParameter& one) {
+    return ShortNumber(one.fitted.value) != ShortNumber(one.model);
+  });
+  const bool something = !d.effects.empty() || changed || !d.closures.empty() || values;
   // A curve is no cause, so what it closes stays unexplained.
   if (!d.closures.empty() && d.effects.empty()) return Verdict::kUnexplained;
-  if (!IsGapClosed(d, proof, runs) || !d.closures.empty())
+  if (!(proof.given_suffices || IsGapClosed(d, proof, runs)) || !d.closures.empty())
     return something && !one_witness ? Verdict::kPartly : Verdict::kUnexplained;
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
