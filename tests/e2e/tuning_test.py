@@ -95,6 +95,11 @@ class TuningTest(fault_case.FaultCase):
         done = subprocess.run(["diff", self.config_file, saved], capture_output=True, text=True, check=False)
         self.assertRegex(done.stdout, r"^(\d+)c\1\n< c2 = 1200\.0 +# psi s/rad.*\n---\n> c2 = 900 +# psi s/rad.*\n$")
         self.run_program("hydro-sim", saved, "--duration", "0.2", "-o", self.path("saved.lcmlog"))
+        # Changes that a simulation would not make are said.
+        unchanged = self.run_program("hydro-sim", saved, "--duration", "0.05", "--tuning", self.path("saved.lcmlog"))
+        self.assertIn("saved.lcmlog: found no change of values", unchanged.stderr)
+        short = self.run_program("hydro-sim", saved, "--duration", "0.05", "--tuning", self.log_file)
+        self.assertIn("1 of 1 changes act after tick 50, the last of this run", short.stderr)
 
     # Tests that in a stack with a key only a holder of the key can change anything.
     def test_sealed(self):
