@@ -166,6 +166,9 @@ class BadInputTest(stack.TestCase):
                            ("newcontroller", "new-controller")):
             self.assert_refused("hydro-launch", [word, stack.config("demo.toml")], f'found "{word}", did you mean "{verb}"?')
         self.assert_refused("hydro-launch", ["--stopp", stack.config("demo.toml")], 'found the unexpected argument "--stopp".*did you mean "--stop"')
+        self.assert_refused("hydro-torture", ["--runs", "0"], "--runs: found 0, allowed 1 and more")
+        self.run_program("hydro-torture", "--runs", "1", "--seed", "1", "--out", self.path("torture"))
+        self.assertFalse(os.path.exists(self.path("torture")), "a folder without a schedule")
         self.assert_refused("hydro-launch", [stack.config("demo.toml"), "--host", "nobody", "--log", "FILE"],
                             "nobody")
 
