@@ -45,7 +45,8 @@ class TuningTest(fault_case.FaultCase):
         self.assertIn(f"tuned: version 1 from tick {tick[1]} on: position.c2 = 900, pressure.natural_frequency_rad_s = 140 (hydro-set)", summary)
         self.assertRegex(summary, r"(?m)^tuned: version 2 from tick \d+ on: position\.c2 as configured, pressure\.natural_frequency_rad_s as configured \(hydro-set\)$")
 
-    # Tests that a refusal is reported with its reason and exit code 1, and changes nothing.
+    # Tests that a refusal is reported with its reason and exit code 1, and changes nothing; that --watch says
+    # when the stack ends.
     def test_refused(self):
         self.start_moving()
         for changes, says in (
@@ -61,7 +62,12 @@ class TuningTest(fault_case.FaultCase):
                               (("c2=900",), "c2: no such value, did you mean position.c2?")):
             self.assertIn(says, self.set(*changes, expect=2).stderr)
         self.assertIn("in force: version 0: as configured", self.set("--list").stdout)
+        watcher = self.start("hydro-set", self.config_file, "--set", f"bus.url={self.url}", "--watch")
+        watcher.wait_for("in force: version 0")
         self.finish()
+        watcher.wait_for(r"the stack ends \(.*\); Ctrl-C ends this, too")
+        watcher.send(signal.SIGINT)
+        self.assertEqual(watcher.wait(), 0, watcher.report())
 
     # Tests wrong usage, and the case that no stack is there.
     def test_bad_usage(self):
