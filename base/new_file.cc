@@ -111,12 +111,13 @@ NewFile::NewFile(const std::string& file, Opening opening, Existing existing)
   CheckKeeps(name_);
   if (existing_ == Existing::kKept) CheckIsNew(name_);
   if (IsBeingWritten(name_)) ThrowIsBeingWritten(name_);
-  if (opening == Opening::kTemporary) {
-    path_ = FreePart(name_);
-  } else {
-    Remove(name_);
-  }
-  descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const bool temporary = opening == Opening::kTemporary;
+  if (!temporary) Remove(name_);
+  do {
+    if (temporary) path_ = FreePart(name_);
+    descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (temporary && descriptor_ < 0 && errno == EEXIST);  // somebody took that name in between
+  if (descriptor_ < 0 && errno == EEXIST) ThrowIsBeingWritten(name_);
   if (descriptor_ < 0) ThrowCannotCreate(name_, errno);
   flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system without locks only loses the check above
 }

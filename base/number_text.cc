@@ -65,7 +65,7 @@ std::string ShortNumber(double value, int digits) {
 std::string StampText(int64_t utime) {
   // us, in 2001 and at the end of 9999: no simulation runs that long, and nobody records after that.
   constexpr int64_t kFirstDate = 1'000'000'000'000'000, kLastDate = 253'402'300'799'999'999;
-  if (utime < kFirstDate || utime > kLastDate) return NumberText(static_cast<double>(utime) * 1e-6) + " s";
+  if (utime < kFirstDate || utime > kLastDate) return NumberText(static_cast<double>(utime) / 1e6) + " s";
   using std::chrono::floor;
   const std::chrono::sys_time<std::chrono::microseconds> stamp{std::chrono::microseconds(utime)};
   const auto day = floor<std::chrono::days>(stamp);

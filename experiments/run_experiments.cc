@@ -125,34 +125,42 @@ bool PrintMissingFindings(const std::vector<ReportEntry>& entries, std::FILE* er
   return false;
 }
 
+// An option that only some experiments use; the others must not ignore it silently.
+struct OnlyFor {
+  const char* option;
+  bool given;
+  bool Experiment::*takes;
+  bool also_all;
+};
+
 }  // namespace
 
 std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
                                           const ExperimentRequest& request) {
   std::vector<std::string> names;
-  std::string list;
-  std::string measured;
-  std::string drawn;
-  for (const Experiment& experiment : all) {
-    names.push_back(experiment.name);
-    list += experiment.name + ", ";
-    if (experiment.takes_measured_run) measured += (measured.empty() ? "" : ", ") + experiment.name;
-    if (experiment.draws_machines) drawn += experiment.name + ", ";
-  }
+  for (const Experiment& experiment : all) names.push_back(experiment.name);
   names.push_back("all");
   const auto found = std::find_if(
       all.begin(), all.end(), [&](const Experiment& experiment) { return experiment.name == request.name; });
   if (found == all.end() && request.name != "all") {
-    throw InputError("NAME: found '" + request.name + "', allowed " + list + "all" +
+    throw InputError("NAME: found '" + request.name + "', allowed " + Joined(names) +
                      DidYouMean(request.name, names));
   }
-  if (!request.options.measured_run.empty() && (found == all.end() || !found->takes_measured_run)) {
-    throw InputError("--run: found for '" + request.name + "', allowed for " +
-                     (measured.empty() ? "none" : measured));
-  }
-  if (request.options.machines != ExperimentOptions{}.machines && found != all.end() &&
-      !found->draws_machines) {
-    throw InputError("--machines: found for '" + request.name + "', allowed for " + drawn + "all");
+  const ExperimentOptions& options = request.options;
+  const OnlyFor choices[] = {
+      {"--run", !options.measured_run.empty(), &Experiment::takes_measured_run, false},
+      {"--machines", options.machines != ExperimentOptions{}.machines, &Experiment::draws_machines, true},
+      {"--noise", options.noise, &Experiment::takes_noise, true},
+      {"--real-time", request.real_time, &Experiment::runs_stack, true}};
+  for (const OnlyFor& choice : choices) {
+    if (!choice.given || (found == all.end() ? choice.also_all : (*found).*choice.takes)) continue;
+    std::vector<std::string> allowed;
+    for (const Experiment& experiment : all) {
+      if (experiment.*choice.takes) allowed.push_back(experiment.name);
+    }
+    if (choice.also_all) allowed.emplace_back("all");
+    throw InputError(std::string(choice.option) + ": found for '" + request.name + "', allowed for " +
+                     (allowed.empty() ? "none" : Joined(allowed)));
   }
   if (found != all.end()) return {*found};
   return all;

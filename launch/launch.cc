@@ -43,7 +43,8 @@ class LaunchLock {
   LaunchLock& operator=(const LaunchLock&) = delete;
 
  private:
-  void Take(const std::string& suffix, const std::string& role, const settings::StackConfig& config);
+  void Take(const std::string& suffix, const std::string& role, const settings::StackConfig& config,
+            const std::string& stop_command);
   void Release();
 
   std::vector<int> sockets_;  // bound to names in Linux's abstract namespace, which leave nothing behind
@@ -57,15 +58,15 @@ LaunchLock::LaunchLock(const settings::StackConfig& config, const LaunchPlan& pl
   for (const ChildSpec& child : plan.children) {
     const std::string role = child.role();
     if (plan.spread && role == "logger") continue;
-    if (child.joints.empty()) Take(config.bus.channel_suffix, role, config);
+    if (child.joints.empty()) Take(config.bus.channel_suffix, role, config, plan.stop_command);
     // A limb is the plant of each of its joints.
     for (const std::string& joint : child.joints)
-      Take(suffix_of(joint), role == "limb" ? "plant" : role, config);
+      Take(suffix_of(joint), role == "limb" ? "plant" : role, config, plan.stop_command);
   }
 }
 
-void LaunchLock::Take(const std::string& suffix, const std::string& role,
-                      const settings::StackConfig& config) {
+void LaunchLock::Take(const std::string& suffix, const std::string& role, const settings::StackConfig& config,
+                      const std::string& stop_command) {
   const std::string prefix =
       "hydro-launch/" + std::to_string(bus::ParseUdpmUrl(config.bus.url).port) + "/" + suffix + "/";
   errno = 0;
@@ -76,8 +77,8 @@ void LaunchLock::Take(const std::string& suffix, const std::string& role,
   } else if (errno == EADDRINUSE) {
     Release();
     throw InputError(config.file + ": found another hydro-launch on this machine that has started a " + role +
-                     " on " + config.bus.url + "; end it with `hydro-launch " + config.file +
-                     " --stop`, or give this one another port in bus.url or another bus.channel_suffix");
+                     " on " + config.bus.url + "; end it with `" + stop_command +
+                     "`, or give this one another port in bus.url or another bus.channel_suffix");
   }
 }
 

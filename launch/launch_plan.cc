@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/word_list.h"
 #include "process/own_program.h"
 #include "process/status.h"
 #include "settings/limb_processes.h"
@@ -187,12 +188,23 @@ ChildSpec OwnChildFor(const settings::ProcessSection& section, const settings::S
   return child;
 }
 
+// With the options that say which bus and joint are meant; the others do not matter to a stop.
+std::string StopCommand(const LaunchRequest& request) {
+  std::string command = "hydro-launch " + ShellWord(request.config_file) + " --stop";
+  for (const std::string& override : request.overrides) {
+    if (override.starts_with("bus.") || override.starts_with("joint="))
+      command += " --set " + ShellWord(override);
+  }
+  return command;
+}
+
 }  // namespace
 
 LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& request,
                       const std::string& programs_folder) {
   LaunchPlan plan;
   plan.timing_file = request.timing_file;
+  plan.stop_command = StopCommand(request);
   const std::vector<settings::ProcessSection> here = ProcessesHere(config, request, &plan.remarks);
   CheckHost(config, request);
   CheckDriverIsStarted(config, request);

@@ -153,6 +153,9 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
       "log",
       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.announced,
       MissingMessages(info));
+  // An imported table numbers its rows anew, so its gaps are neither skipped ticks nor missing messages.
+  if (info.ticks.missing > SaturatingSum(info.ticks.announced, MissingMessages(info)))
+    line("{} ticks have no state in the log, from the first to the last", info.ticks.missing);
   const std::string advice = timing::SkippedTicksAdvice(info.ticks.announced, TicksPassed(info), "CONFIG");
   if (!advice.empty()) line("{}", advice);
   if (info.ticks.sampled > 1) line("the log has {}, not each", DescribeSampling(info.ticks.sampled));

@@ -74,7 +74,9 @@ OrderedJson Described(const Run& run) {
                      {"limits", Limits(run)},
                      {"noise", Noise(run)}};
   if (run.config != nullptr) object["units"] = Units(run.config->model.description.units);
-  if (!run.config_problem.empty()) object["problem"] = run.config_problem;
+  // A table that was imported needs no configuration.
+  if (!run.config_problem.empty() && !run.description->config_text.empty())
+    object["problem"] = run.config_problem;
   return object;
 }
 

@@ -17,7 +17,8 @@ constexpr size_t kMostText = 300;
 constexpr size_t kMostEntries = 200;
 
 InputError Wrong(const std::string& key, const json& found, const std::string& allowed) {
-  return InputError(key + ": found " + Quoted(JsonText(found)) + ", allowed is " + allowed);
+  const std::string text = found.is_string() ? found.get<std::string>() : JsonText(found);
+  return InputError(key + ": found " + Quoted(text) + ", allowed is " + allowed);
 }
 
 // The fields of a request. Only known fields are read.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "settings/overrides.h"
 #include "settings/process_sections.h"
 #include "settings/quantity_keys.h"
 #include "settings/scope_section.h"
@@ -184,6 +185,26 @@ void ReadReference(SectionReader section, const std::string& config_file, Refere
   CheckedTrajectory(reference->trajectory, section);
 }
 
+bool KnowsKey(const std::string& dotted_key) {
+  // Which keys these have depends on other keys, or another reader knows them.
+  for (const char* section : {"joint.", "limb.", "arm.", "process.", "driver.", "model.motion."}) {
+    if (dotted_key.starts_with(section)) return true;
+  }
+  if (FindQuantity(dotted_key) != nullptr) return true;
+  // The readers know their keys, and an unknown key is the first error that they report.
+  try {
+    TomlNode alone;
+    ApplyOverrides({dotted_key + "=0"}, &alone);
+    if (dotted_key.starts_with("reference."))
+      ApplyOverrides({"reference.kind=csv", "reference.points=[[0, 0]]"}, &alone);
+    StackConfig ignored;
+    ReadSections(alone, "", &ignored);
+  } catch (const InputError& error) {
+    return std::string(error.what()).find("unknown key") == std::string::npos;
+  }
+  return true;
+}
+
 void CheckKeysHaveSections(const TomlNode& root) {
   // Each of these keys is tried in every section. A user with more stray keys did not just forget a section.
   constexpr int kMostTried = 20;
@@ -194,22 +215,8 @@ void CheckKeysHaveSections(const TomlNode& root) {
     std::vector<std::string> meant;
     for (const char* section :
          {"model", "bus", "time", "plant", "pressure", "position", "limits", "noise", "logger", "scope"}) {
-      if (const QuantityKey* quantity = FindQuantity(std::string(section) + "." + key)) {
-        meant.push_back(std::string(section) + "." + std::string(quantity->key));
-        continue;
-      }
-      // The readers know their keys, and an unknown key is the first error that they report.
-      TomlNode alone, table;
-      table.members.push_back({key, node});
-      alone.members.push_back({section, std::move(table)});
-      StackConfig ignored;
-      try {
-        ReadSections(alone, "", &ignored);
-        meant.push_back(std::string(section) + "." + key);
-      } catch (const InputError& error) {
-        if (std::string(error.what()).find("unknown key") == std::string::npos)
-          meant.push_back(std::string(section) + "." + key);
-      }
+      const std::string dotted = std::string(section) + "." + key;
+      if (KnowsKey(dotted)) meant.push_back(PresentName(dotted));
     }
     if (meant.empty()) continue;  // the document's reader reports what is wrong
     throw InputError(node.place + ": " + Quoted(key) +

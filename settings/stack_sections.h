@@ -10,6 +10,10 @@
 
 namespace hydro::settings {
 
+// Whether a configuration may have that key, "section.key". Of [reference], the keys of kind = "csv" count;
+// of sections whose keys depend on others, any.
+bool KnowsKey(const std::string& dotted_key);
+
 // Throws InputError for a key that stands outside any section, and names the sections that have such a key.
 void CheckKeysHaveSections(const TomlNode& root);
 

@@ -1,8 +1,12 @@
 // hydro-sim CONFIG -o FILE: plant, pressure loop, position loop and logger in one process on a simulated
 // clock.
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "base/input_error.h"
 #include "base/number_text.h"
@@ -61,6 +65,19 @@ void Warn(const std::vector<std::string>& remarks) {
   for (const std::string& remark : remarks) hydro::Remark("hydro-sim: warning: " + remark);
 }
 
+// A change that never acts is hardly what was asked for.
+void WarnOfUnused(const std::vector<hydro::tuned_settings_t>& tunings, const std::string& file,
+                  int64_t last_tick) {
+  const auto late = std::count_if(tunings.begin(), tunings.end(),
+                                  [&](const auto& settings) { return settings.acts_at > last_tick; });
+  if (tunings.empty()) {
+    Warn({file + ": found no change of values, so --tuning changes nothing"});
+  } else if (last_tick >= 0 && late > 0) {
+    Warn({file + ": " + std::to_string(late) + " of " + std::to_string(tunings.size()) +
+          " changes act after tick " + std::to_string(last_tick) + ", the last of this run (--duration)"});
+  }
+}
+
 Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std::string& tunings_of,
                         const std::string& machine_file) {
   if (IsWholeLimb(options)) {
@@ -82,6 +99,7 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
     std::vector<std::string> overrides = options.overrides;
     const auto joint = hydro::settings::TakeJointChoice(&overrides);
     tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of, {.joint = joint}).messages);
+    WarnOfUnused(tunings, tunings_of, config->last_tick);
   }
   std::shared_ptr<const hydro::model::ModelDescription> machine;
   if (!machine_file.empty()) {

@@ -162,6 +162,10 @@ CsvLayout LayoutBelow(const Lines& lines, const NamesLine& names, const std::str
 
 // Whether most of the rows have as many cells as there are names.
 bool Fits(const Lines& lines, const NamesLine& names) {
+  // Blanks around another separator, "t , v", separate nothing.
+  for (const std::string_view cell : CellsOf(lines[names.at], names.separator)) {
+    if (cell == "," || cell == ";") return false;
+  }
   constexpr size_t kJudged = 20;
   size_t judged = 0, good = 0;
   for (size_t at = Below(lines, names.at); at < lines.size() && judged < kJudged; at = Below(lines, at)) {
@@ -192,6 +196,9 @@ std::optional<CsvLayout> FindAskedLayout(const Lines& lines, const std::string& 
   }
   if (best.empty()) return std::nullopt;
   if (best.size() > 1) std::erase_if(best, [&](const NamesLine& names) { return !Fits(lines, names); });
+  // A table of one column reads the same by every separator.
+  if (std::all_of(best.begin(), best.end(), [](const NamesLine& names) { return names.names == 1; }))
+    best.resize(std::min<size_t>(best.size(), 1));
   if (best.size() > 1) {
     std::vector<std::string> names;
     names.reserve(best.size());

@@ -136,8 +136,10 @@ std::optional<double> CsvText::Number(size_t column) const {
 std::string CsvText::Place() const { return file_ + ": line " + std::to_string(line_); }
 
 InputError CsvText::CellError(size_t column, const std::string& allowed) const {
+  const bool begins_again = cells_[column] == names_[column];
   return InputError(Place() + ", column " + names_[column] + ": found " + Quoted(cells_[column]) +
-                    ", allowed " + allowed);
+                    ", allowed " + allowed +
+                    (begins_again ? "; where the names stand again, cut the table in two" : ""));
 }
 
 }  // namespace hydro::tables

@@ -68,7 +68,8 @@ class Reader {
     CheckDrawsDiffer();
     ReadCollect();
     ReadReport();
-    top_.Finish();
+    top_.Finish();  // before the next line, as a misspelt key may be what is missing
+    if (!study_.draws.empty() && !top_.Has("draws")) throw top_.Error("draws", "nothing", "how many to draw");
     study_.files["study.toml"] = settings::FormatToml(kept_);
     if (!study_.config_text.empty()) study_.files["config.toml"] = study_.config_text;
     if (!study_.model_text.empty()) study_.files["model.toml"] = study_.model_text;
@@ -160,9 +161,8 @@ class Reader {
     }
     study_.list = ReadList(list, scope_, csv, name);
     study_.draws = ReadDraws(&top_, scope_);
-    const bool counted = top_.Integer("draws", &study_.draw_count, 1, kMostCases);
+    top_.Integer("draws", &study_.draw_count, 1, kMostCases);
     top_.Boolean("same_draws", &study_.same_draws);
-    if (!study_.draws.empty() && !counted) throw top_.Error("draws", "nothing", "how many to draw");
     std::set<std::string> keys;
     for (const std::string& key : study_.Keys()) {
       if (!keys.insert(key).second)

@@ -2,6 +2,7 @@
 // Every state goes over a bus into a log; prints what the log holds.
 #include <cstdio>
 
+#include "base/input_error.h"
 #include "bus/in_process_bus.h"
 #include "hydro/state_t.hpp"
 #include "model/actuator.h"
@@ -51,6 +52,7 @@ void Run(const hydro::model::ModelDescription& description, const std::string& f
     hydro::state_t state{};
     state.utime = static_cast<int64_t>(actuator.time() * 1e6);
     state.tick = tick;
+    state.time = tick * kTick;
     state.arm_angle = now.arm_angle;
     bus.Publish("HYDRO_STATE", state);
     bus.HandleUntil(clock.Now());
@@ -63,7 +65,12 @@ void Run(const hydro::model::ModelDescription& description, const std::string& f
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
-  Run(hydro::settings::LoadModelFile(argv[1]), argv[2]);
+  try {
+    Run(hydro::settings::LoadModelFile(argv[1]), argv[2]);
+  } catch (const hydro::InputError& error) {  // one line that says what is wrong with a file
+    std::fprintf(stderr, "moves_an_arm: %s\n", error.what());
+    return 2;
+  }
 
   hydro::log::LogReader log(argv[2]);
   hydro::log::LogEvent event;

@@ -70,6 +70,8 @@ struct Experiment {
   double cost = 1;  // rough duration in seconds, for the progress bar and the starting order
   bool takes_measured_run = false;
   bool draws_machines = false;
+  bool takes_noise = false;
+  bool runs_stack = false;
 };
 
 // All experiments, in the order of the paper and of the report.

@@ -57,6 +57,7 @@ struct LaunchPlan {
   bool spread = false;               // other processes of the stack run on other hosts
   std::vector<std::string> remarks;  // lines that the user should see
   std::string timing_file;           // the .json report on how the loops kept time; empty: none
+  std::string stop_command;          // ends whatever stack runs on its bus
 };
 
 struct LaunchTiming {

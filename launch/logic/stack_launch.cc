@@ -89,11 +89,11 @@ void StackLaunch::RefuseIfOneRuns() {
     const std::vector<std::string> present = PresentInOurPlace();
     if (present.empty()) continue;
     throw InputError(fmt::format(
-        "{}: found a stack on {}{} that runs: {}; end it with `hydro-launch {} --stop`, or give this one "
+        "{}: found a stack on {}{} that runs: {}; end it with `{}`, or give this one "
         "another port in bus.url or another bus.channel_suffix",
         config_.file, config_.bus.url,
         config_.bus.channel_suffix.empty() ? "" : " (channels *" + config_.bus.channel_suffix + ")",
-        fmt::join(present, ", "), config_.file));
+        fmt::join(present, ", "), plan_.stop_command));
   }
 }
 

@@ -21,6 +21,7 @@
 #include "process/own_program.h"
 #include "process/process_main.h"
 #include "process/spawn.h"
+#include "process/stderr_log.h"
 #include "process/stop_signal.h"
 #include "process/timing/real_time.h"
 #include "settings/process_sections.h"
@@ -139,6 +140,7 @@ int CheckSensorsOf(const RigProgram& program, const settings::CommonOptions& opt
   const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
   settings::CheckDriver(config, program.name);
   process::CatchStopSignals();
+  const process::StderrLog log(program.name);  // lines of the same form as in a run
   const StandIn stand_in(config);
   const bus::WallClock clock;
   return program.check_sensors(config, clock);

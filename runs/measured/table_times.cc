@@ -158,6 +158,8 @@ void RequireIncreasing(const SignalColumn& source, const tables::Table& table) {
         (even > 0 ? "" : ", T by the recorder's settings");
   } else if (equal == wrong) {
     error += ": take one of the two out";
+  } else if (equal == 0 && wrong + 1 == times.size() && wrong > 1) {
+    error += ": the last row is the first in time; sort the rows by time";
   } else {
     error += ": where the recorder began again, cut the table in two, a run each";
   }

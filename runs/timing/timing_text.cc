@@ -42,6 +42,11 @@ std::string TimingText(const std::vector<TimedProcess>& processes) {
   std::string text;
   for (const TimedProcess& process : processes) {
     const loop_statistics_t& total = process.total;
+    if (process.histograms.empty() && total.cycles == 0) {  // hydro-sim's loops only step
+      text += fmt::format("{} on {}: no timing was measured: a simulation, or no cycle of this loop\n",
+                          process.role, process.host);
+      continue;
+    }
     text += fmt::format(
         "{} on {}: {} cycles in {:.3f} s, {} deadlines missed, {} messages lost, at most {} waited{}\n",
         process.role, process.host, total.cycles, total.interval_s, total.missed_deadlines,

@@ -48,6 +48,7 @@ void Run::Describe(const run_description_t& given) {
     const UnitSystem units = runs::ModelUnits(given, name);
     tick_channels_ = TickChannels(units);
     ghost_channels_ = GhostChannels(units);
+    if (given.config_text.empty()) throw InputError("it has no configuration, like every imported table");
     config = std::make_shared<const settings::StackConfig>(settings::ParseStackConfig(
         given.config_text, name + " (HYDRO_RUN)", given.model_text, given.model_file));
   } catch (const InputError& error) {

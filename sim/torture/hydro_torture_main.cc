@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -24,8 +25,8 @@ namespace {
 struct TortureOptions {
   int64_t seed = -1;  // -1: choose a new one
   double seconds = 60;
-  double hours = 0;  // used instead of seconds, if it is not 0
-  int64_t runs = 0;  // 0: as many as there is time for
+  double hours = 0;                                    // used instead of seconds, if it is not 0
+  int64_t runs = std::numeric_limits<int64_t>::max();  // as many as there is time for
   int jobs = 1;
   std::string config;
   std::string replay;
@@ -134,7 +135,7 @@ int Run(const TortureOptions& options) {
   };
   if (!(options.seconds > 0 && options.seconds <= 1e8)) refuse("--seconds", options.seconds, "more than 0");
   if (!(options.hours >= 0 && options.hours <= 1e5)) refuse("--hours", options.hours, "more than 0");
-  if (options.runs < 0) refuse("--runs", static_cast<double>(options.runs), "1 and more");
+  if (options.runs < 1) refuse("--runs", static_cast<double>(options.runs), "1 and more");
   if (!options.config.empty()) ConfigFor(Schedule{}, options.config);  // an error here is no violation
   if (options.jobs < 1 || options.jobs > 256) {
     throw InputError(fmt::format("--jobs: found {}, allowed are 1 to 256", options.jobs));

@@ -15,6 +15,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/input_error.h"
@@ -27,6 +28,7 @@
 namespace {
 std::vector<std::string> calls;
 int fsync_error = 0;
+std::function<void()> after_lstat;  // what another process does when this one has looked for a free name
 }  // namespace
 
 extern "C" int fsync(int fd) {
@@ -40,6 +42,14 @@ extern "C" int fsync(int fd) {
 extern "C" int rename(const char* from, const char* to) noexcept {
   calls.emplace_back("rename");
   return static_cast<int>(syscall(SYS_rename, from, to));
+}
+
+extern "C" int lstat(const char* path, struct stat* status) noexcept {
+  const auto result = static_cast<int>(syscall(SYS_newfstatat, AT_FDCWD, path, status, AT_SYMLINK_NOFOLLOW));
+  const int error = errno;
+  if (const auto then = std::exchange(after_lstat, nullptr)) then();
+  errno = error;
+  return result;
 }
 
 namespace hydro {
@@ -223,6 +233,24 @@ TEST_F(NewFileTest, OneWriterAtATime) {
 TEST_F(NewFileTest, PipesAreNoInputs) {
   ASSERT_EQ(mkfifo(Path("pipe").c_str(), 0600), 0);
   EXPECT_THAT(ErrorOf([&] { ReadTextFile(Path("pipe")); }), HasSubstr("found a pipe"));
+}
+
+// Tests that of two writers that find the same temporary name free in the same instant, the later one says
+// that the other writes, or takes another name when the other's file is only there.
+TEST_F(NewFileTest, TemporaryNameTakenInTheSameInstant) {
+  const std::string name = Path("table.csv");
+  const auto both = [&] { const NewFile file(name, Opening::kTemporary); };
+  int other = -1;
+  after_lstat = [&] {
+    other = open((name + ".part").c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666);
+    flock(other, LOCK_EX);
+  };
+  EXPECT_THAT(ErrorOf(both), HasSubstr("table.csv: is being written by another process"));
+  close(other);
+  unlink((name + ".part").c_str());
+  after_lstat = [&] { std::ofstream(name + ".part") << "another's"; };
+  EXPECT_EQ(ErrorOf(both), "no error");
+  EXPECT_EQ(ReadTextFile(name + ".part"), "another's");
 }
 
 }  // namespace

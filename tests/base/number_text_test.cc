@@ -39,6 +39,7 @@ TEST(NumberTextTest, Stamps) {
   EXPECT_EQ(StampText(1'795'714'394'000'123), "2026-11-26 17:33:14.000123 UTC");
   EXPECT_EQ(StampText(1'709'251'199'999'999), "2024-02-29 23:59:59.999999 UTC");
   EXPECT_EQ(StampText(12'500'000), "12.5 s");
+  EXPECT_EQ(StampText(2'105'999), "2.105999 s");
   EXPECT_EQ(StampText(-1'000'000), "-1 s");
   EXPECT_EQ(StampText(std::numeric_limits<int64_t>::max()), "9223372036854.775 s");
 }

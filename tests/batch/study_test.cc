@@ -96,9 +96,10 @@ TEST(StudyTest, RefusesWrongInput) {
        "study.toml:3: grid.key: found \"model:betta\", allowed model: and one of"},
       {kConfig + "[[grid]]\nkey = \"effect:pump.strbeck.speed\"\nvalues = [1]\n",
        "study.toml:3: grid.key: found"},
-      {kStep + "[[grid]]\nkey = \"a\"\nvalues = [1]\n[[draw]]\nkey = \"a\"\ndistribution = "
-               "\"choice\"\nvalues = [1]\n",
+      {kStep + "[[draw]]\nkey = \"a\"\ndistribution = \"choice\"\nvalues = [1]\n",
        "study.toml:1: draws: found nothing, allowed how many to draw"},
+      {"drws = 1\n" + kStep + "[[draw]]\nkey = \"a\"\ndistribution = \"choice\"\nvalues = [1]\n",
+       "study.toml:1: \"drws\": found an unknown key"},
       {"draws = 1\n" + kStep +
            "[[grid]]\nkey = \"a\"\nvalues = [1]\n[[draw]]\nkey = \"a\"\ndistribution = \"choice\"\nvalues = "
            "[1]\n",

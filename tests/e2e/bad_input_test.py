@@ -166,6 +166,11 @@ class BadInputTest(stack.TestCase):
                            ("newcontroller", "new-controller")):
             self.assert_refused("hydro-launch", [word, stack.config("demo.toml")], f'found "{word}", did you mean "{verb}"?')
         self.assert_refused("hydro-launch", ["--stopp", stack.config("demo.toml")], 'found the unexpected argument "--stopp".*did you mean "--stop"')
+        table = self.write("run.csv", b"time_s,arm_angle_rad,arm_ref_rad,p1_psi,p2_psi,pressure_ref_psi,motor_speed_rad_s,voltage_V\n0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0\n")
+        self.assert_refused("hydro-plot", [table, table + "/pictures"], "run.csv/pictures: cannot be made: Not a directory")
+        self.assert_refused("hydro-torture", ["--runs", "0"], "--runs: found 0, allowed 1 and more")
+        self.run_program("hydro-torture", "--runs", "1", "--seed", "1", "--out", self.path("torture"))
+        self.assertFalse(os.path.exists(self.path("torture")), "a folder without a schedule")
         self.assert_refused("hydro-launch", [stack.config("demo.toml"), "--host", "nobody", "--log", "FILE"],
                             "nobody")
 

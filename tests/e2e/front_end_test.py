@@ -549,6 +549,7 @@ class FrontEndInputTest(FrontEndCase):
         check = self.run_program("hydro-driver", stack.config(self.config), "--check-sensors", "--duration", "0.7",
                                  *self.options(relay.url))
         self.assertRegex(check.stdout, r"p1 +analog 0 +100\.?\d* psi")
+        self.assertRegex(check.stderr, r"^\d\d:\d\d:\d\d\.\d{3} hydro-driver: ")  # as in a run
         self.assertRegex(check.stdout, r"motor_angle +counter 0 +-0\.0\d+ rad")
         self.assertEqual({s["state"] for s in relay.samples()}, {wire.READY})
         self.assertEqual(front.changes(), [])

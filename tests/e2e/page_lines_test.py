@@ -104,12 +104,13 @@ PAGES = {
         "javac": Not("needs a JDK", "java"),
     }),
     "launch.md": (None, "", {
-        "hydro-launch config/demo.toml": As("hydro-launch config/demo.toml --duration 1 --log out/run.lcmlog", SHORT),
+        "mkdir -p out; hydro-launch": As("mkdir -p out; hydro-launch config/demo.toml --duration 1 --log out/run.lcmlog", SHORT),
         "rig$": Not("two hosts", "hosts"),
         "desk$": Not("two hosts", "hosts"),
     }),
     "limbs.md": (None, "", {
-        "hydro-launch config/limb.toml --time realtime": As("hydro-launch config/limb.toml --time realtime --duration 1 --log out/limb.lcmlog", SHORT),
+        "mkdir -p out; hydro-launch config/limb.toml --time realtime":
+            As("mkdir -p out; hydro-launch config/limb.toml --time realtime --duration 1 --log out/limb.lcmlog", SHORT),
         "hydro-log summary out/limb": Prints("a limb with 2 joints"),
         "hydro-log compare b.lcmlog": Prints("identical"),
         "hydro-launch rearm config/limb.toml      ": As("hydro-launch rearm config/limb.toml", "none runs", 1),
@@ -220,7 +221,6 @@ class PageLinesTest(stack.TestCase):
         os.makedirs(self.path("build"))
         os.symlink(stack.BIN, self.path("build/bin"))
         os.symlink(ROOT / "scripts", self.path("scripts"))
-        os.makedirs(self.path("out"))
         for config in pathlib.Path(self.path("config")).glob("*.toml"):
             config.write_text(re.sub(r'(?m)^url = "[^"]*"', f'url = "{self.url}"', config.read_text()))
 

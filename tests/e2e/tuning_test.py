@@ -45,7 +45,8 @@ class TuningTest(fault_case.FaultCase):
         self.assertIn(f"tuned: version 1 from tick {tick[1]} on: position.c2 = 900, pressure.natural_frequency_rad_s = 140 (hydro-set)", summary)
         self.assertRegex(summary, r"(?m)^tuned: version 2 from tick \d+ on: position\.c2 as configured, pressure\.natural_frequency_rad_s as configured \(hydro-set\)$")
 
-    # Tests that a refusal is reported with its reason and exit code 1, and changes nothing.
+    # Tests that a refusal is reported with its reason and exit code 1, and changes nothing; that --watch says
+    # when the stack ends.
     def test_refused(self):
         self.start_moving()
         for changes, says in (
@@ -61,7 +62,12 @@ class TuningTest(fault_case.FaultCase):
                               (("c2=900",), "c2: no such value, did you mean position.c2?")):
             self.assertIn(says, self.set(*changes, expect=2).stderr)
         self.assertIn("in force: version 0: as configured", self.set("--list").stdout)
+        watcher = self.start("hydro-set", self.config_file, "--set", f"bus.url={self.url}", "--watch")
+        watcher.wait_for("in force: version 0")
         self.finish()
+        watcher.wait_for(r"the stack ends \(.*\); Ctrl-C ends this, too")
+        watcher.send(signal.SIGINT)
+        self.assertEqual(watcher.wait(), 0, watcher.report())
 
     # Tests wrong usage, and the case that no stack is there.
     def test_bad_usage(self):
@@ -95,6 +101,11 @@ class TuningTest(fault_case.FaultCase):
         done = subprocess.run(["diff", self.config_file, saved], capture_output=True, text=True, check=False)
         self.assertRegex(done.stdout, r"^(\d+)c\1\n< c2 = 1200\.0 +# psi s/rad.*\n---\n> c2 = 900 +# psi s/rad.*\n$")
         self.run_program("hydro-sim", saved, "--duration", "0.2", "-o", self.path("saved.lcmlog"))
+        # Changes that a simulation would not make are said.
+        unchanged = self.run_program("hydro-sim", saved, "--duration", "0.05", "--tuning", self.path("saved.lcmlog"))
+        self.assertIn("saved.lcmlog: found no change of values", unchanged.stderr)
+        short = self.run_program("hydro-sim", saved, "--duration", "0.05", "--tuning", self.log_file)
+        self.assertIn("1 of 1 changes act after tick 50, the last of this run", short.stderr)
 
     # Tests that in a stack with a key only a holder of the key can change anything.
     def test_sealed(self):

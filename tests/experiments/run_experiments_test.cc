@@ -185,6 +185,10 @@ TEST_F(RunExperimentsTest, WrongUsage) {
   EXPECT_EQ(refusal(run), "--run: found for 'fig3', allowed for friction");
   run.name = "all";
   EXPECT_THAT(refusal(run), HasSubstr("--run: found for 'all'"));
+  ExperimentRequest noise{.name = "fig3"};
+  noise.options.noise = true;
+  EXPECT_EQ(refusal(noise), "--noise: found for 'fig3', allowed for all");
+  EXPECT_EQ(refusal({.name = "fig3", .real_time = true}), "--real-time: found for 'fig3', allowed for all");
   run.name = "friction";
   EXPECT_EQ(refusal(run), "x.csv: no steady state");
   run.folder = folder_ / "out";

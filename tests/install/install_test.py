@@ -68,6 +68,9 @@ class InstallTest(unittest.TestCase):
         self.assertAlmostEqual(float(match[2]), 0.3, delta=0.01)
         effects = len(list((SOURCE / "model/effects").glob("*/*_*.cc")))  # a file is ROOM/GROUP_NAME.cc
         self.assertEqual(int(match[3]), effects)
+        wrong = subprocess.run([program, "none.toml", project / "none.lcmlog"], capture_output=True, text=True, check=False)
+        self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
+        self.assertIn("10000 states over 2.000 s", run(self.prefix / "bin/hydro-log", "summary", log))
 
     def test_a_controller_builds(self):
         """Tests that the example of a controller in C++ builds on what is installed; tests/e2e/own_controller_test.py runs it."""

@@ -66,6 +66,15 @@ TEST_F(LaunchPlanTest, PassesConfigurationAndOverrides) {
   EXPECT_FALSE(plan.spread);
   EXPECT_THAT(plan.children[1].argv, ElementsAre((folder_ / "hydro-pressure-ctrl").string(), "stack.toml",
                                                  "--set", "time.mode=lockstep", "--set", "position.c1=2"));
+  EXPECT_EQ(plan.stop_command, "hydro-launch stack.toml --stop");
+}
+
+// Tests that the command that ends a stack on the same bus names that bus.
+TEST_F(LaunchPlanTest, StopCommandNamesTheBus) {
+  Processes({{"hydro-plant", ""}});
+  request_.overrides = {"bus.url=udpm://239.1.2.3:7?ttl=0", "position.c1=2", "joint=knee"};
+  EXPECT_EQ(Plan().stop_command,
+            "hydro-launch stack.toml --stop --set 'bus.url=udpm://239.1.2.3:7?ttl=0' --set 'joint=knee'");
 }
 
 // Tests that a logger runs only with --log and is stopped last, and that the plant is told to wait for it.

@@ -61,6 +61,7 @@ TEST_F(TableTimesTest, RepeatedRows) {
               AllOf(HasSubstr("1500 of 4000 rows are like that: the times are rounded"),
                     HasSubstr("every = 0.000625")));
   EXPECT_THAT(ErrorOf(Rows(4000, [](int) { return 7.0; })), HasSubstr("every = T }"));
+  EXPECT_THAT(ErrorOf("2,1,2\n1,1,2\n0,1,3\n"), HasSubstr("the last row is the first in time; sort"));
   EXPECT_THAT(ErrorOf("0,1,2\n1,1,2\n0,1,3\n"), HasSubstr("where the recorder began again"));
 }
 

@@ -46,6 +46,7 @@ TEST(LiveRequestTest, RefusesNonsense) {
       {R"({"id":7})", "op: found nothing"},
       {R"({"id":7,"op":"fly"})", "\"view\""},
       {R"({"id":7,"op":5})", "op: found"},
+      {R"({"id":7,"op":"foo"})", R"(op: found "foo")"},
       {R"({"id":7,"op":"view","channels":"dp","span":1})", "channels: found"},
       {R"({"id":7,"op":"view","channels":[1],"span":1})", "channels: found"},
       {R"({"id":7,"op":"view","channels":["dp"]})", "span: found nothing"},

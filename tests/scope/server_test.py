@@ -90,6 +90,7 @@ class ServerTest(stack.TestCase):
         self.assertEqual([run["last"] for run in scope.status()["runs"]], [3, 1])
         table = scope.request("POST", "/api/cut", {"run": 1, "t0": 0, "t1": 1, "format": "csv"})[2]
         self.assertEqual(scope.json("POST", "/api/open?name=table.csv", table)["run"], 2)
+        self.assertNotIn("problem", scope.status()["runs"][2])  # a table has no configuration, and needs none
         torn = scope.json("POST", "/api/open?name=torn.lcmlog", other[: len(other) // 2])
         self.assertNotEqual(torn["problem"], "")
         for run in (1, 2, 3):

@@ -1,5 +1,6 @@
 #include "tools/hydro_log/hydro_log.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -102,6 +103,11 @@ class CompareVerb {
   }
   int Run() const {
     const runs::LimbLog a = Read(a_, suffix_a_), b = Read(b_, suffix_b_);
+    // Two runs that ended before their first state are not a run and its repetition.
+    if (!HasStates(a) && !HasStates(b)) {
+      throw InputError(a_ + ": found no state, and none in " + b_ +
+                       ": nothing was compared; logs of runs are needed");
+    }
     const std::optional<std::string> difference = runs::FirstDifference(a, a_, b, b_);
     WarnOf(a.limb);
     WarnOf(b.limb);
@@ -118,12 +124,12 @@ class CompareVerb {
     // Messages that cannot be read cannot be called "identical bit by bit", so they are refused here.
     runs::LimbLog log = runs::ReadLimbLog(file, choice);
     runs::RequireOneRun(log);
-    // Two empty logs are not a run and its repetition.
-    const runs::RunMessages& messages = log.limb.messages;
-    if (!log.whole() && messages.Of<state_t>().empty() && messages.Of<motor_command_t>().empty()) {
-      throw InputError(file + ": found no state and no motor command; a log of a run is needed");
-    }
     return log;
+  }
+
+  static bool HasStates(const runs::LimbLog& log) {
+    const auto has = [](const runs::RunLog& run) { return !run.messages.Of<state_t>().empty(); };
+    return has(log.limb) || std::any_of(log.joints.begin(), log.joints.end(), has);
   }
 
   std::string a_, b_;

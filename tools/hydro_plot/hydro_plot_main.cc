@@ -3,6 +3,7 @@
 #include <string>
 #include <system_error>
 
+#include "base/input_error.h"
 #include "base/new_file.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
@@ -27,8 +28,9 @@ int main(int argc, char** argv) {
     const hydro::tables::Table run = hydro::tables::ReadTableWithoutUnits(table);
     const std::string arm = hydro::page::FigureFile(hydro::plot::ArmFigure(run), "arm");
     const std::string pressure = hydro::page::FigureFile(hydro::plot::PressureFigure(run), "pressure");
-    std::error_code failed;  // WriteWholeFile reports the reason
+    std::error_code failed;
     std::filesystem::create_directories(folder, failed);
+    if (failed) throw hydro::InputError(folder + ": cannot be made: " + failed.message());
     hydro::WriteWholeFile(folder + "/arm.svg", arm, hydro::Existing::kKept);
     hydro::WriteWholeFile(folder + "/pressure.svg", pressure, hydro::Existing::kKept);
     return 0;

@@ -164,6 +164,7 @@ class Setter {
   void Watch() {
     std::optional<tuned_settings_t> shown;
     std::map<std::string, int64_t> acting;
+    std::string ending;
     while (!output_.interrupted()) {
       const tuned_settings_t& in_force = *client_.in_force();
       if (!shown) Print(said_, "in force: " + runs::DescribeInForce(in_force));
@@ -178,6 +179,9 @@ class Setter {
           acting[role] = status.in_force;
         }
       }
+      if (client_.ending() != ending && !client_.ending().empty())
+        Print(said_, fmt::format("the stack ends ({}); Ctrl-C ends this, too", client_.ending()));
+      ending = client_.ending();
       std::fflush(said_);
       bus_.HandleUntil(clock_.Now() + kTurn);
     }

@@ -6,6 +6,7 @@
 
 #include "base/word_list.h"
 #include "settings/quantity_keys.h"
+#include "settings/stack_sections.h"
 
 namespace hydro::tuning {
 namespace {
@@ -46,7 +47,7 @@ constexpr std::array kKeys{
     TunableKey{"reference.last_frequency_hz", "> 0", "of a chirp", kPosition},
     TunableKey{"reference.duration_s", "> 0", "of a chirp", kPosition},
     TunableKey{"reference.points", kReach, "[[time, value], ...] of a csv reference", kPosition},
-    TunableKey{"reference.interpolation", "\"linear\", \"hold\"", "between points", kPosition},
+    TunableKey{"reference.interpolation", "\"linear\", \"hold\", \"cubic\"", "between points", kPosition},
     TunableKey{"reference.timeout_s", "> 0, <= 1e6", "a plan older than this is followed no further",
                kPosition},
     TunableKey{"reference.max_speed", "> 0", "of the reference that follows a planner", kPosition},
@@ -90,11 +91,13 @@ std::string WhyNotTunable(const std::string& key) {
       if (name.ends_with("." + key)) return key + ": no such value, did you mean " + name + "?";
     }
   }
+  if (settings::KnowsKey(key)) {
+    return key +
+           ": cannot be changed while the stack runs (hydro-set --list shows what can); change the "
+           "configuration and restart";
+  }
   const std::string meant = DidYouMean(key, names);
-  if (!meant.empty()) return key + ": no such value" + meant;
-  return key +
-         ": cannot be changed while the stack runs (hydro-set --list shows what can); change the "
-         "configuration and restart";
+  return key + ": no such value" + (meant.empty() ? "; hydro-set --list shows what can be changed" : meant);
 }
 
 }  // namespace hydro::tuning

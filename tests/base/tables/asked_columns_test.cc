@@ -39,6 +39,8 @@ TEST_F(AskedColumnsTest, OthersAreNotJudged) {
   ExpectTheTable(Read("A,t,A,u\nx,0,,7\n0x1F,0.5,-,8\n12:30,1,1e999,9\n"));
   ExpectTheTable(Read("t;note;u\n0;\"a; b\";7\n0,5;c.d, e;8\n1;1.234.567;9\n"));
   ExpectTheTable(Read("t,u,note\n0,7,\"two\nlines\"\n0.5,8,\"a \"\"b\"\"\"\n1,9,\n"));
+  ExpectTheTable(Read("t , x , u\n0 , 1 , 7\n0.5 , 1 , 8\n1 , 1 , 9\n"));  // blanks separate nothing
+  EXPECT_THAT(Read("t\n0\n1\n").names, ElementsAre("t"));                  // the same by every separator
   EXPECT_THAT(Read("A,t,A,u\n1,0,2,7\n").names, ElementsAre("A", "t", "A", "u"));
 }
 

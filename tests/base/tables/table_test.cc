@@ -134,6 +134,9 @@ TEST_F(TableTest, MalformedCsv) {
       {"a,b\n1,2\n3\n", ": line 3: found 1 cells, allowed 2, as many as there are names"},
       {"a,b\n1,2,3\n", ": line 2: found 3 cells, allowed 2"},
       {"a,b\n1,2\n3,4 5\n", ": line 3, column b: found \"4 5\", allowed a number, nan or an empty cell"},
+      {"a,b\n1,2\na,b\n3,4\n",
+       ": line 3, column a: found \"a\", allowed a number, nan or an empty cell; "
+       "where the names stand again, cut the table in two"},
       {"a,b\n1,0x10\n", ": line 2, column b: found \"0x10\""},
       {"a,b\n1,1e999\n", ": line 2, column b: found \"1e999\""},
       {"a,b\n1,--2\n", ": line 2, column b: found \"--2\""},

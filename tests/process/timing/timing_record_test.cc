@@ -115,6 +115,17 @@ TEST(TimingRecordTest, ImproperHistogram) {
   EXPECT_NO_THROW(TimingText(processes));
 }
 
+// Tests that loops that measured nothing, those of a simulation, are not shown as loops that were killed.
+TEST(TimingReportTest, SimulationHasNoTiming) {
+  TimingRecord record;
+  loop_statistics_t report = Report("plant", 1, 0, false);
+  report.cycles = 0;
+  record.Add(report);
+  const std::string text = TimingText(record.Processes());
+  EXPECT_THAT(text, HasSubstr("no timing was measured: a simulation"));
+  EXPECT_THAT(text, Not(HasSubstr("without a last report")));
+}
+
 // Tests the keys and units of the JSON.
 TEST(TimingReportTest, Json) {
   TimingRecord record;

@@ -62,6 +62,14 @@ TEST_F(HydroLogTest, CompareOfNothing) {
   const Outcome outcome = HydroLog({"compare", Path("a"), Path("a")});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.out, "");
+  runs::RunMessages run = log::SampleRun(9);
+  log::WriteRun(Path("run"), run);
+  run.Of<state_t>().clear();  // it ended before its first state
+  log::WriteRun(Path("b"), run);
+  const Outcome failed = HydroLog({"compare", Path("b"), Path("b")});
+  EXPECT_EQ(failed.exit_code, 2);
+  EXPECT_THAT(failed.err, HasSubstr("found no state, and none in " + Path("b") + ": nothing was compared"));
+  EXPECT_EQ(HydroLog({"compare", Path("b"), Path("run")}).exit_code, 1);
 }
 
 // Tests that a log survives the way through a table of either kind and back.
@@ -220,7 +228,8 @@ TEST_F(HydroLogTest, IncompleteAndDamaged) {
   }
 }
 
-// Tests that messages removed from a log are missing messages, not late wake-ups of the plant.
+// Tests that messages removed from a log are missing messages, not late wake-ups of the plant, and that gaps
+// that are neither are said too.
 TEST_F(HydroLogTest, MissingIsNotSkipped) {
   runs::RunMessages run = log::SampleRun(400);
   std::vector<state_t>& states = run.Of<state_t>();
@@ -234,6 +243,12 @@ TEST_F(HydroLogTest, MissingIsNotSkipped) {
   EXPECT_THAT(summary.out, HasSubstr(", 3 ticks skipped (late wake-ups), 150 messages missing from the log"));
   EXPECT_THAT(HydroLog({"info", Path("log")}).out,
               HasSubstr("without state: 153, of which the plant skipped 3 and 150 are missing from the log"));
+  EXPECT_THAT(summary.out, Not(HasSubstr("no state")));
+  // Of an imported table, whose rows are numbered anew, only the ticks tell.
+  for (size_t k = 0; k < states.size(); ++k) states[k].sequence = static_cast<int64_t>(k);
+  log::WriteRun(Path("imported"), run);
+  EXPECT_THAT(HydroLog({"summary", Path("imported")}).out,
+              HasSubstr("153 ticks have no state in the log, from the first to the last\n"));
 }
 
 // Tests that of a log whose description is damaged, info and the messages can be had, and that the verbs that

@@ -99,7 +99,13 @@ TEST(PrepareChange, RefusesWithTheReason) {
       {{"limits.motor_speed=100", "reference.kind=sine", "reference.amplitude=0.2",
         "reference.frequency_hz=2"},
        "reference: found a speed of 2.513 rad/s, allowed 0.2161 rad/s (limits.motor_speed at the arm)"},
-      {{"reference.signal=\"pressure\""}, "reference.signal: no such value"},
+      {{"reference.signal=\"pressure\""}, "reference.signal: cannot be changed while the stack runs"},
+      {{"reference.file=other.csv"}, "reference.file: cannot be changed while the stack runs"},
+      {{"driver.watchdog_s=1"}, "driver.watchdog_s: cannot be changed while the stack runs"},
+      {{"limb.telemetry_hz=5"}, "limb.telemetry_hz: cannot be changed while the stack runs"},
+      {{"nonsense=5"}, "nonsense: no such value; hydro-set --list shows what can be changed"},
+      {{"reference.amplitud=1"}, "reference.amplitud: no such value, did you mean \"reference.amplitude\"?"},
+      {{"plant.nonsense=5"}, "plant.nonsense: no such value; hydro-set --list"},
   };
   for (const auto& c : cases) {
     const PreparedChange change = Prepared(c.changes);
