@@ -122,6 +122,26 @@ TEST(VerdictOn, ValuesAlone) {
   EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
 }
 
+// Tests that a value that is the given one in every digit that is shown is no finding, where whole runs judge
+// too; and that nothing is missing then, although the model as given leaves a little more.
+TEST(VerdictOn, AValueThatLooksTheSame) {
+  Judged one({1.3, 1.05, 1.05}, {1.3, 1.05, 1.05});
+  one.FindNoEffect({"J"});
+  one.proof.seconds = 0;
+  one.d.fit = one.d.held_out = {1.26, 1.05, 1.05};
+  one.d.parameters.emplace_back().model = 0.03;
+  one.d.parameters[0].fitted.value = 0.0300001;
+  EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
+  one.d.parameters[0].fitted.value = 0.031;
+  EXPECT_EQ(one.Of(), Verdict::kParameters);
+  one.FindNoEffect({});
+  one.d.parameters.clear();
+  one.d.fit = one.d.held_out = {1.26, 1.26, 1.26};
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+  one.proof.given_suffices = true;
+  EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
+}
+
 // Tests that nothing is missing only where whole runs say so too, as far as the model can follow them, and
 // that over long runs small errors may add up.
 TEST(VerdictOn, NothingMissingOverWholeRunsToo) {
