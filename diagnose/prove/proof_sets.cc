@@ -21,12 +21,16 @@ constexpr size_t kMostNumbersTimesSamples = 200000;
 // How many sets are made by removing one of their effects: enough for two leading sets with three effects,
 // and what remains of them.
 constexpr size_t kMostMade = 10;
-// By what factors a value that balances do not see may be off: steps from which a fit finds the way, since
-// the frequency of a spring changes by half as much, and that reach to kImplausible.
-constexpr double kRacedFactors[] = {0.5, 0.63, 0.8, 1.25, 1.6, 2};
-// Between them the value is searched in steps of the half size each: at a pressure at which a valve opens,
-// the gap has a bend that no derivative passes.
-constexpr double kFirstStep = 1.12, kLastStep = 1.005;
+// By what factor a value that balances do not see is moved as long as that helps, up to kImplausible. The
+// frequency of a spring changes by half as much, so a fit finds the way from the nearest of these values.
+constexpr double kRaced = 1.25;
+// From there on in steps of half the size each: at a pressure at which a valve opens, the gap has a bend that
+// no derivative passes.
+constexpr double kLastStep = 1.005;
+
+double model::Parameters::*MemberOf(const Change& value) {
+  return model::BaseParameters()[model::BasePlace(value.parameter)].member;
+}
 
 }  // namespace
 
@@ -243,27 +247,35 @@ bool ProofSets::IsSeenByBalances(size_t base) const {
 std::optional<ProvedSet> ProofSets::BestSingleValue() {
   const ProvedSet given = sets_[kGiven];
   std::optional<ProvedSet> best;
-  const auto scaled = [&](const Change& change, const ProvedSet& from, double factor) {
-    const size_t place = model::BasePlace(change.parameter);
-    ProvedSet one = from;
+  // Returns whether the value, so many times as large as in `from`, predicts better than there.
+  const auto is_better = [&](const Change& change, double factor, ProvedSet* from) {
+    ProvedSet one = *from;
     one.hypothesis.changes = {change};
-    one.hypothesis.base = {place};
-    one.hypothesis.model.parameters.*model::BaseParameters()[place].member *= factor;
+    one.hypothesis.base = {model::BasePlace(change.parameter)};
+    one.hypothesis.model.parameters.*MemberOf(change) *= factor;
     JudgeSet(windows_, context_.jobs, &one);
-    if (PredictsBetter(one, best ? *best : given)) best = std::move(one);
+    if (PredictsBetter(one, best ? *best : given)) best = one;
+    const bool better = PredictsBetter(one, *from);
+    *from = std::move(one);
+    return better;
   };
   for (const Change& change : context_.changes) {
-    if (!change.effect.empty()) continue;
-    const size_t place = model::BasePlace(change.parameter);
-    const bool none = context_.given.parameters.*model::BaseParameters()[place].member == 0;
-    if (none || IsSeenByBalances(place)) continue;
-    for (const double factor : kRacedFactors) {
-      if (!TimeIsUp(context_)) scaled(change, given, factor);
+    if (!change.effect.empty() || context_.given.parameters.*MemberOf(change) == 0) continue;
+    if (IsSeenByBalances(model::BasePlace(change.parameter))) continue;
+    for (const double factor : {1 / kRaced, kRaced}) {
+      ProvedSet at = given;
+      for (double off = kRaced; off < kRaced * kImplausible && !TimeIsUp(context_); off *= kRaced) {
+        if (!is_better(change, factor, &at)) break;
+      }
     }
   }
-  for (double step = kFirstStep; best && step > kLastStep && !TimeIsUp(context_); step = std::sqrt(step)) {
+  for (double step = std::sqrt(kRaced); best && step > kLastStep && !TimeIsUp(context_);
+       step = std::sqrt(step)) {
     const ProvedSet middle = *best;
-    for (const double factor : {1 / step, step}) scaled(middle.hypothesis.changes.front(), middle, factor);
+    for (const double factor : {1 / step, step}) {
+      ProvedSet at = middle;
+      is_better(middle.hypothesis.changes.front(), factor, &at);
+    }
   }
   return best;
 }
@@ -271,7 +283,7 @@ std::optional<ProvedSet> ProofSets::BestSingleValue() {
 bool ProofSets::RaceValues() {
   if (fitted_.empty()) return false;
   std::optional<ProvedSet> best = BestSingleValue();
-  if (!best) return false;
+  if (!best || !FallOf(sets_[kGiven].near, best->near).Exceeds(kPartOfAnEffect)) return false;
   RefineValues(context_, fitted_, windows_, kReportedValues, &*best);
   if (TypicalGap(best->near) > kCloseEnough) {
     const size_t raced = best->hypothesis.base.front();
