@@ -138,6 +138,7 @@ struct OnlyFor {
 std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
                                           const ExperimentRequest& request) {
   std::vector<std::string> names;
+  names.reserve(all.size() + 1);
   for (const Experiment& experiment : all) names.push_back(experiment.name);
   names.push_back("all");
   const auto found = std::find_if(
