@@ -70,7 +70,7 @@ class InstallTest(unittest.TestCase):
         self.assertEqual(int(match[3]), effects)
         wrong = subprocess.run([program, "none.toml", project / "none.lcmlog"], capture_output=True, text=True, check=False)
         self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
-        self.assertIn("10000 states over 2.000 s", run(self.prefix / "bin/hydro-log", "summary", log))
+        self.assertIn("10000 states over 2.000 s", run(BUILD / "bin/hydro-log", "summary", log))
 
     def test_a_controller_builds(self):
         """Tests that the example of a controller in C++ builds on what is installed; tests/e2e/own_controller_test.py runs it."""
