@@ -22,8 +22,8 @@ struct Proof : ProofRoles {
   std::vector<ProvedSet> sets;
   // s, length of a judging window (ProvedSet::near); 0: the held-out runs themselves judge.
   double seconds = 0;
-  // Whether nothing is missing because the values that predict best are those of the model as given, in every
-  // digit that is shown.
+  // Whether nothing is missing because the values that predict whole runs best are those of the model as
+  // given, in every digit that is shown.
   bool given_suffices = false;
   std::vector<std::string> runs;  // the run of each judging window
   // The best set fitted to windows of the fitted runs, or to these runs; it shows how well the set's numbers

@@ -236,46 +236,43 @@ void ProofSets::Race(size_t from, const Change& change) {
 }
 
 bool ProofSets::IsSeenByBalances(size_t base) const {
+  constexpr double kMuchMore = 0.5;  // of the uncertainty: what is known beforehand does not weigh in then
   const double known = model::UncertaintyOf(context_.given, base);
   return std::ranges::any_of(sets_, [&](const ProvedSet& set) {
     if (set.hypothesis.measured == nullptr) return false;
     const auto found = set.hypothesis.measured->deviation.find(base);
-    return found != set.hypothesis.measured->deviation.end() && found->second < 0.5 * known;
+    return found != set.hypothesis.measured->deviation.end() && found->second < kMuchMore * known;
   });
 }
 
 std::optional<ProvedSet> ProofSets::BestSingleValue() {
   const ProvedSet given = sets_[kGiven];
   std::optional<ProvedSet> best;
-  // Returns whether the value, so many times as large as in `from`, predicts better than there.
-  const auto is_better = [&](const Change& change, double factor, ProvedSet* from) {
-    ProvedSet one = *from;
+  const auto moved = [&](const Change& change, const ProvedSet& from, double factor) {
+    ProvedSet one = from;
     one.hypothesis.changes = {change};
     one.hypothesis.base = {model::BasePlace(change.parameter)};
     one.hypothesis.model.parameters.*MemberOf(change) *= factor;
     JudgeSet(windows_, context_.jobs, &one);
     if (PredictsBetter(one, best ? *best : given)) best = one;
-    const bool better = PredictsBetter(one, *from);
-    *from = std::move(one);
-    return better;
+    return one;
   };
   for (const Change& change : context_.changes) {
     if (!change.effect.empty() || context_.given.parameters.*MemberOf(change) == 0) continue;
     if (IsSeenByBalances(model::BasePlace(change.parameter))) continue;
     for (const double factor : {1 / kRaced, kRaced}) {
       ProvedSet at = given;
-      for (double off = kRaced; off < kRaced * kImplausible && !TimeIsUp(context_); off *= kRaced) {
-        if (!is_better(change, factor, &at)) break;
+      for (double off = kRaced; off < kImplausible && !TimeIsUp(context_); off *= kRaced) {
+        ProvedSet next = moved(change, at, factor);
+        if (!PredictsBetter(next, at)) break;
+        at = std::move(next);
       }
     }
   }
   for (double step = std::sqrt(kRaced); best && step > kLastStep && !TimeIsUp(context_);
        step = std::sqrt(step)) {
     const ProvedSet middle = *best;
-    for (const double factor : {1 / step, step}) {
-      ProvedSet at = middle;
-      is_better(middle.hypothesis.changes.front(), factor, &at);
-    }
+    for (const double factor : {1 / step, step}) moved(middle.hypothesis.changes.front(), middle, factor);
   }
   return best;
 }

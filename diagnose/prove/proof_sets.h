@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "diagnose/prove/proof_context.h"
@@ -33,9 +34,9 @@ class ProofSets {
   void Refine(size_t place);
   // Adds a set with one more change, fitted from the catalogue's starts and judged.
   void Race(size_t from, const Change& change);
-  // Tries each base value that may differ and that balances do not see, alone and by large factors, refines
-  // the best of them, and adds it, or the same with all other values refined, if it leaves no more than
-  // noise. Returns whether there is one. A fit of all values at once seldom gets to one that is far off:
+  // Tries each base value that may differ and that balances do not see, alone and by up to a factor of two,
+  // refines the best of them, and adds it, or the same with all other values refined, if it leaves no more
+  // than noise. Returns whether there is one. A fit of all values at once seldom gets to one that is far off:
   // where neither the oil's spring nor the pressure at which a valve opens shows in a balance, every other
   // value tries to stand in for it.
   bool RaceValues();

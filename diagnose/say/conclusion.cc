@@ -120,7 +120,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
     // Other values that are not clearly different, or that take nothing of the gap, stay as given.
     Proof nothing = proof;
     nothing.best = proof.given;
-    nothing.given_suffices = nothing_missing;
+    nothing.given_suffices = nothing_missing && !proof.OnWindows();
     return Conclude(context, nothing, proposed);
   }
   HearBothWitnesses(proof, &d);
