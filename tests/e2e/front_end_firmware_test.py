@@ -266,12 +266,7 @@ class QemuTest(BoardTest):
         self.computer = Computer(Both(self.stream("link"), self.machine))
 
     def stream(self, name):
-        def connect():
-            try:
-                return Stream(self.path(name))
-            except (FileNotFoundError, ConnectionRefusedError):
-                return None
-        stream = self.wait_until(connect, name)
+        stream = self.wait_until(lambda: Stream.opened(self.path(name)), name)
         self.addCleanup(stream.close)
         return stream
 

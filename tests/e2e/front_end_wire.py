@@ -208,6 +208,14 @@ class Udp:
 class Stream:
     """A Unix socket."""
 
+    @classmethod
+    def opened(cls, path):
+        """None as long as nobody listens: the path is there a moment before its maker listens."""
+        try:
+            return cls(path)
+        except (FileNotFoundError, ConnectionRefusedError):
+            return None
+
     def __init__(self, path):
         self.socket = socket.socket(socket.AF_UNIX)
         try:

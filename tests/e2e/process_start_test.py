@@ -86,11 +86,10 @@ class ClosedStreamsTest(ProcessStartCase):
             with self.subTest(closed=closed):
                 path = self.path("".join(map(str, closed)) + ".socket")
                 board = self.start_prepared(lambda numbers=closed: [os.close(number) for number in numbers], "hydro-front-end", f"unix:{path}")
-                self.wait_until(lambda found=path: os.path.exists(found), "a front end that listens")
+                port = self.wait_until(lambda found=path: front_end_wire.Stream.opened(found), "a front end that listens")
+                self.addCleanup(port.close)
                 link = {int(name): os.readlink(f"/proc/{board.pid}/fd/{name}") for name in os.listdir(f"/proc/{board.pid}/fd")}
                 self.assertEqual([number for number, target in link.items() if target.startswith("socket:") and number < 3], [], link)
-                port = front_end_wire.Stream(path)
-                self.addCleanup(port.close)
                 computer = front_end_wire.Computer(port)
                 computer.connect(front_end_wire.settings(watchdog=200, sensors=[front_end_wire.sensor(1, 0), front_end_wire.sensor(1, 1)]))
                 self.assertEqual(computer.sample()["p1"], 1)
