@@ -205,6 +205,19 @@ class Cluster:
         lines = self.ask("squeue", "-h", "-r", "-t", "all", "-o", "%F %K %T").splitlines()
         return {(job, index): state for job, index, state in map(str.split, lines)}
 
+    def queue(self):
+        """The tasks that wait or run, each as "JOB INDEX STATE". One whose node still tidies up after it (COMPLETING) has ended."""
+        answers = []
+
+        def ask():
+            done = subprocess.run(["squeue", "-h", "-r", "-t", "PENDING,RUNNING,SUSPENDED,COMPLETING", "-o", "%F %K %T"],
+                                  env=self.environment, capture_output=True, text=True, timeout=PATIENCE, check=False)
+            answers.append(done.stdout.splitlines())
+            return done.returncode == 0
+
+        self._wait_until(ask, "squeue answers")
+        return [task for task in answers[-1] if not task.endswith(" COMPLETING")]
+
     def cancel_all(self):
         """Ends all jobs, and waits until the queue is empty."""
         self.ask("scancel", "--state=PENDING", "--user=" + getpass.getuser())
