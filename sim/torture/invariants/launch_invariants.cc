@@ -136,6 +136,17 @@ void LaunchInvariants::OnStatus(const Packet& packet) {
   if (!Decode(packet, &status)) return;
   if (launch_->children.empty() && status.role != process::kLaunchRole && !process::HasLeft(status))
     launch_->others = true;
+  const auto has_its_role = [&](const SimulatedProcess* child) {
+    return NameOf(*child) == status.role || (child->role() == Role::kPlant && process::IsPlant(status.role));
+  };
+  const auto has_its_session = [&](const SimulatedProcess* child) {
+    return child->identity().session == status.session;
+  };
+  const auto& children = launch_->children;
+  if (std::any_of(children.begin(), children.end(), has_its_role) &&
+      std::none_of(children.begin(), children.end(), has_its_session)) {
+    launch_->strangers.insert(status.session);
+  }
   for (const SimulatedProcess* child : launch_->children) {
     if (child->number() == packet.sender && status.state != process_status_t::FAILED)
       launch_->ready.try_emplace(packet.sender, *now_);
@@ -190,7 +201,7 @@ void LaunchInvariants::OnChildEnd(const SimulatedProcess& child) {
 std::string LaunchInvariants::WhatFailed() const {
   if (!launch_->failed.empty() || launch_->faults.size() > kMostFaults) return launch_->failed;
   for (const auto& [key, active] : launch_->faults) {
-    if (active && !process::IsWarning(key.second)) return "it has heard of no end of " + key.second;
+    if (active && !launch_->strangers.contains(key.first) && !process::IsWarning(key.second)) return "it has heard of no end of " + key.second;
   }
   return "";
 }

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,6 +67,7 @@ class LaunchInvariants {
     std::string may_fail;               // the reason why it may be 1
     std::map<int, TrueTime> ready;      // by child, when the launcher first heard that it is ready
     std::map<std::pair<int64_t, std::string>, bool> faults;  // by sender and code, as heard: whether active
+    std::set<int64_t> strangers;  // sessions of others in its children's roles, as an earlier launch may leave
   };
 
   bool Owns(const SimulatedProcess& process) const;
