@@ -63,6 +63,20 @@ bool LaunchInvariants::Owns(const SimulatedProcess& process) const {
   return std::find(launch_->children.begin(), launch_->children.end(), &process) != launch_->children.end();
 }
 
+bool LaunchInvariants::IsStranger(int64_t session) const {
+  const auto heard = launch_->roles.find(session);
+  if (heard == launch_->roles.end()) return false;
+  const auto has_a_role_of = [&](const SimulatedProcess* child) {
+    return heard->second.contains(NameOf(*child)) ||
+           (child->role() == Role::kPlant &&
+            std::any_of(heard->second.begin(), heard->second.end(), process::IsPlant));
+  };
+  const auto is_of = [&](const SimulatedProcess* child) { return child->identity().session == session; };
+  const auto& children = launch_->children;
+  return std::any_of(children.begin(), children.end(), has_a_role_of) &&
+         std::none_of(children.begin(), children.end(), is_of);
+}
+
 void LaunchInvariants::Cause(const std::string& why) {
   if (launch_->cause) return;
   launch_->cause = *now_;
@@ -136,17 +150,7 @@ void LaunchInvariants::OnStatus(const Packet& packet) {
   if (!Decode(packet, &status)) return;
   if (launch_->children.empty() && status.role != process::kLaunchRole && !process::HasLeft(status))
     launch_->others = true;
-  const auto has_its_role = [&](const SimulatedProcess* child) {
-    return NameOf(*child) == status.role || (child->role() == Role::kPlant && process::IsPlant(status.role));
-  };
-  const auto has_its_session = [&](const SimulatedProcess* child) {
-    return child->identity().session == status.session;
-  };
-  const auto& children = launch_->children;
-  if (std::any_of(children.begin(), children.end(), has_its_role) &&
-      std::none_of(children.begin(), children.end(), has_its_session)) {
-    launch_->strangers.insert(status.session);
-  }
+  launch_->roles[status.session].insert(status.role);
   for (const SimulatedProcess* child : launch_->children) {
     if (child->number() == packet.sender && status.state != process_status_t::FAILED)
       launch_->ready.try_emplace(packet.sender, *now_);
@@ -193,15 +197,18 @@ void LaunchInvariants::OnChildEnd(const SimulatedProcess& child) {
   if (!in_order)
     launch_->failed = NameOf(child) + (child.killed() ? " was killed" : " has ended with an error");
   if (in_order && !launch_->cause && !launch_->early_end) launch_->early_end = *now_;
-  if (child.role() == Role::kLogger && !config_.logger.required && !launch_->cause)
+  if (child.role() == Role::kLogger && !config_.logger.required && !launch_->cause) {
+    launch_->may_fail = "the logger has ended before the run";
     return;  // the run continues
+  }
   Cause("the end of " + NameOf(child));
 }
 
 std::string LaunchInvariants::WhatFailed() const {
   if (!launch_->failed.empty() || launch_->faults.size() > kMostFaults) return launch_->failed;
   for (const auto& [key, active] : launch_->faults) {
-    if (active && !launch_->strangers.contains(key.first) && !process::IsWarning(key.second)) return "it has heard of no end of " + key.second;
+    if (active && !IsStranger(key.first) && !process::IsWarning(key.second))
+      return "it has heard of no end of " + key.second;
   }
   return "";
 }

@@ -67,10 +67,12 @@ class LaunchInvariants {
     std::string may_fail;               // the reason why it may be 1
     std::map<int, TrueTime> ready;      // by child, when the launcher first heard that it is ready
     std::map<std::pair<int64_t, std::string>, bool> faults;  // by sender and code, as heard: whether active
-    std::set<int64_t> strangers;  // sessions of others in its children's roles, as an earlier launch may leave
+    std::map<int64_t, std::set<std::string>> roles;          // by session, as heard
   };
 
   bool Owns(const SimulatedProcess& process) const;
+  // Whether a session has one of its children's roles and is none of theirs, as an earlier launch may leave.
+  bool IsStranger(int64_t session) const;
   void Cause(const std::string& why);
   void OnChildEnd(const SimulatedProcess& child);
   void OnStop(const Packet& packet, const SimulatedProcess& launcher);

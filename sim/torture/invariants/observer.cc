@@ -26,7 +26,8 @@ Observer::Observer(const settings::StackConfig& config, Network& network, const 
       output_left_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<output_left_t>())),
       pressure_command_(
           network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<pressure_command_t>())),
-      reference_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<arm_reference_t>())) {
+      reference_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<arm_reference_t>())),
+      settings_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<tuned_settings_t>())) {
   if (!config.siblings.empty()) limb_.emplace(config, network, now);
 }
 
@@ -52,6 +53,7 @@ void Observer::OnSent(const Packet& packet, const SimulatedProcess& sender) {
   if (packet.channel == statistics_) OnStatistics(packet, sender);
   if (packet.channel == pressure_command_) OnPressureCommand(packet, sender);
   if (packet.channel == reference_) OnReference(packet, sender);
+  if (packet.channel == settings_ && sender.role() == Role::kPlant) OnSettings(packet, RecordOf(sender));
   if (output_left_t left; packet.channel == output_left_ && Decode(packet, &left)) {
     PlantRecord& plant = RecordOf(sender);
     const bool zero = left.accepted != 0 && left.voltage == 0;
@@ -103,6 +105,16 @@ void Observer::OnFault(const Packet& packet) {
     plants_[sender]->zero_faults[fault.code] = fault.latched;
   } else {
     plants_[sender]->zero_faults.erase(fault.code);
+  }
+}
+
+// While a fault holds zero volts, an operator may loosen a limit.
+void Observer::OnSettings(const Packet& packet, PlantRecord& plant) {
+  tuned_settings_t settings;
+  if (!Decode(packet, &settings) || settings.stage != tuned_settings_t::DECIDED) return;
+  plant.next_limits_at = settings.acts_at;
+  for (size_t i = 0; i < settings.names.size(); ++i) {
+    if (settings.names[i].starts_with("limits.")) plant.next_limits[settings.names[i]] = settings.values[i];
   }
 }
 

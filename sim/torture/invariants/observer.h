@@ -74,6 +74,7 @@ class Observer {
   PlantRecord& RecordOf(const SimulatedProcess& plant);
   void OnState(const Packet& packet, const SimulatedProcess& sender);
   void OnFault(const Packet& packet);
+  void OnSettings(const Packet& packet, PlantRecord& plant);
   void OnStatistics(const Packet& packet, const SimulatedProcess& sender);
   bool OnStop(const Packet& packet, const SimulatedProcess& process);
   void CheckLeft(const PlantRecord& plant);
@@ -87,7 +88,7 @@ class Observer {
   const TrueTime* now_;
   Coverage& coverage_;
   const int state_, command_, fault_, stop_, rearm_, configuration_, run_, statistics_, output_left_,
-      pressure_command_, reference_;                  // channel numbers
+      pressure_command_, reference_, settings_;       // channel numbers
   std::vector<std::unique_ptr<PlantRecord>> plants_;  // by number of the process
   PlantRecord* newest_plant_ = nullptr;
   std::vector<Violation> violations_;

@@ -33,6 +33,22 @@ void PlantInvariants::Latch(int64_t tick, const std::string& why) {
   plant_.latched_at = *observer_.now_;
 }
 
+bool PlantInvariants::IsOverLimit(int64_t tick, const model::Measurement& measured) {
+  if (plant_.next_limits_at >= 0 && tick >= plant_.next_limits_at) {
+    plant_.limits = plant_.next_limits;
+    plant_.next_limits_at = -1;
+  }
+  const auto limit = [this](const char* name, double configured) {
+    const auto changed = plant_.limits.find(name);
+    return changed == plant_.limits.end() ? configured : changed->second;
+  };
+  const settings::LimitsSection& configured = observer_.config_.limits;
+  const double pressure = limit("limits.pressure", configured.pressure_psi);
+  return measured.p1 > pressure || measured.p2 > pressure ||
+         std::fabs(measured.motor_speed) > limit("limits.motor_speed", configured.motor_speed_rad_s) ||
+         std::fabs(measured.arm_angle) > limit("limits.arm_angle", configured.arm_angle_rad);
+}
+
 void PlantInvariants::OnRead(int64_t tick, const model::Measurement& measured, int64_t suspended_ns) {
   if (plant_.voltage != 0) {
     for (const auto& [code, latched] : plant_.zero_faults) {
@@ -44,9 +60,7 @@ void PlantInvariants::OnRead(int64_t tick, const model::Measurement& measured, i
   const settings::LimitsSection& limits = observer_.config_.limits;
   plant_.read_tick = tick;
   PlantRecord::Tick& entry = plant_.At(tick);
-  const bool over = measured.p1 > limits.pressure_psi || measured.p2 > limits.pressure_psi ||
-                    std::fabs(measured.motor_speed) > limits.motor_speed_rad_s ||
-                    std::fabs(measured.arm_angle) > limits.arm_angle_rad;
+  const bool over = IsOverLimit(tick, measured);
   entry.sound = !over && std::isfinite(measured.p1) && std::isfinite(measured.p2) &&
                 std::isfinite(measured.motor_speed);
   plant_.over_limit = over;

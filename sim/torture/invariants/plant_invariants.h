@@ -23,6 +23,8 @@ class PlantInvariants {
   bool realtime() const { return observer_.config_.time.mode == settings::TimeMode::kRealtime; }
   int64_t stale_ticks() const;
   void Latch(int64_t tick, const std::string& why);
+  // Whether a reading is beyond a limit that holds at this tick.
+  bool IsOverLimit(int64_t tick, const model::Measurement& measured);
   void CheckRange(int64_t tick, double voltage);
   void CheckOrigin(int64_t tick, double voltage);
   void CheckLatched(int64_t tick);

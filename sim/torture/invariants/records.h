@@ -85,6 +85,10 @@ class PlantRecord {
   int64_t obeyed_tick = -1;                 // of the newest command that was obeyed
   int64_t obeyed_session = 0;               // session of that command
   int64_t suspended_ns = 0;
+  // The limits of the readings that hold now, and those that it has announced and the tick from which they
+  // hold.
+  std::map<std::string, double> limits, next_limits;
+  int64_t next_limits_at = -1;  // -1: none
 
  private:
   void Hear(const ReceivedCommand& command);
