@@ -276,7 +276,8 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
     for (const ValueByRun& value : diagnosis.per_run) diagnosis.remarks.push_back(RemarkOn(value));
-    if (IsOpen(diagnosis.verdict) && options.per_run.empty() && !diagnosis.per_run.empty())
+    const bool matters = IsOpen(diagnosis.verdict) || !diagnosis.by_run.empty();
+    if (matters && options.per_run.empty() && !diagnosis.per_run.empty())
       diagnosis.sentence += " " + RemarkOn(diagnosis.per_run.front()) + ".";
   }
   const std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);

@@ -107,6 +107,7 @@ void ProofSets::AddProposal(const Proposal& proposal) {
   set.hypothesis = std::move(hypothesis);
   set.proposed = proposal.model;
   set.without = proposal.without;
+  set.by_run = proposal.by_run;
   set.weight = proposal.weight;
   Push(std::move(set));
 }

@@ -18,6 +18,8 @@ struct Proposal : EstimatedModel {
   std::vector<model::ModelDescription> without;
   double score = 0;   // log evidence + log prior
   double weight = 0;  // among all that were estimated, 0 to 1
+  // Names of parameters of which each model of `without` has its run's own value.
+  std::vector<std::string> by_run = {};
 };
 
 // What the balances say of effects, by their ids.

@@ -44,11 +44,11 @@ constexpr int kMarchesAgain = 2;
 std::vector<model::ModelDescription> ModelsOfRuns(const ProofContext& context,
                                                   const std::vector<size_t>& allowed,
                                                   const model::ModelDescription& model,
-                                                  const ChangeSet& set) {
+                                                  const std::vector<std::string>& by_run) {
   std::vector<model::ModelDescription> models(context.predicted().size(), model);
   for (const size_t place : ValuesOfADay(allowed)) {
     const model::BaseParameter& base = model::BaseParameters()[place];
-    if (std::ranges::find(set, "run." + base.info.name) == set.end()) continue;
+    if (std::ranges::find(by_run, base.info.name) == by_run.end()) continue;
     const std::optional<RunValues> values = ValuesOfRuns(model, context.predicted(), place, context.jobs);
     for (size_t r = 0; r < models.size() && values; ++r) models[r].parameters.*base.member = values->value[r];
   }
@@ -124,25 +124,28 @@ void AtLikeliestScale(const model::ModelDescription& given, EstimatedModel* esti
     estimated->base.push_back(model::BasePlace("k_1"));
 }
 
-// If one value is far off, the model with only this value changed: all other values may be right as given.
-std::optional<Proposal> OneValueAlone(const model::ModelDescription& given, const ChangeSet& set,
-                                      const Proposal& all) {
-  if (set.size() != 1 || !set[0].starts_with("value.") || all.changes.size() != 1) return std::nullopt;
-  const std::string& name = all.changes[0].parameter;
-  for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
-    const model::BaseParameter& base = model::BaseParameters()[place];
-    if (base.info.name != name) continue;
-    Proposal alone = all;
-    alone.model.parameters = given.parameters;
-    alone.model.parameters.*base.member = all.model.parameters.*base.member;
-    for (size_t r = 0; r < alone.without.size(); ++r) {
-      alone.without[r].parameters = given.parameters;
-      alone.without[r].parameters.*base.member = all.without[r].parameters.*base.member;
-    }
-    alone.base = {place};
-    return alone;
-  }
-  return std::nullopt;
+// If one value is far off, or differs by run, the model with only this value changed: all other values may be
+// right as given.
+std::optional<Proposal> OneValueAlone(const ProofContext& context, const std::vector<size_t>& allowed,
+                                      const ChangeSet& set, const Proposal& all) {
+  const bool is_value = set.size() == 1 && set[0].starts_with("value.") && all.changes.size() == 1;
+  const bool by_run = set.size() == 1 && all.by_run.size() == 1;
+  if (!is_value && !by_run) return std::nullopt;
+  const std::string& name = by_run ? all.by_run[0] : all.changes[0].parameter;
+  const std::vector<model::BaseParameter>& bases = model::BaseParameters();
+  const auto base =
+      std::ranges::find_if(bases, [&](const model::BaseParameter& one) { return one.info.name == name; });
+  if (base == bases.end()) return std::nullopt;  // of an effect that the model has
+  Proposal alone = all;
+  const auto keep_one = [&](const model::ModelDescription& estimated, model::ModelDescription* model) {
+    model->parameters = context.given.parameters;
+    model->parameters.*base->member = estimated.parameters.*base->member;
+  };
+  keep_one(all.model, &alone.model);
+  for (size_t r = 0; r < alone.without.size(); ++r) keep_one(all.without[r], &alone.without[r]);
+  if (by_run) alone.without = ModelsOfRuns(context, allowed, alone.model, all.by_run);
+  alone.base = {static_cast<size_t>(base - bases.begin())};
+  return alone;
 }
 
 // A model has each effect once, so it cannot contain two curves on one balance over different variables.
@@ -358,9 +361,11 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
         proposal.without.push_back(without && shown ? without->model : estimated->model);
       }
     }
-    if (NamesARun(set)) proposal.without = ModelsOfRuns(context, allowed, proposal.model, set);
+    proposal.by_run = ParametersByRun(set);
+    if (!proposal.by_run.empty())
+      proposal.without = ModelsOfRuns(context, allowed, proposal.model, proposal.by_run);
     for (const std::string& sensor : inverted) Invert(sensor, &proposal);
-    if (const std::optional<Proposal> alone = OneValueAlone(context.given, set, proposal))
+    if (const std::optional<Proposal> alone = OneValueAlone(context, allowed, set, proposal))
       proposed.proposals.push_back(*alone);
     proposed.proposals.push_back(std::move(proposal));
   }

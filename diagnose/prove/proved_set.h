@@ -17,6 +17,7 @@ struct ProvedSet {
   // When runs are held out in turn, the same model without each run. Empty: the hypothesis' model predicts
   // all runs.
   std::vector<model::ModelDescription> without;
+  std::vector<std::string> by_run;  // as of the proposal; without meaning where `without` is empty
   std::vector<WindowGap> near;
   std::vector<WindowGap> far;   // empty until a comparison needs them
   double weight = 0;            // of the proposal; 0 if it was not proposed

@@ -50,9 +50,16 @@ std::vector<Unjudged> UnseenWaves(const ScanRuns& runs) {
 
 }  // namespace
 
-bool NamesARun(const ChangeSet& set) {
-  return std::ranges::any_of(set, [](const std::string& name) { return name.starts_with("run."); });
+std::vector<std::string> ParametersByRun(const ChangeSet& set) {
+  const std::string prefix = "run.";
+  std::vector<std::string> names;
+  for (const std::string& change : set) {
+    if (change.starts_with(prefix)) names.push_back(change.substr(prefix.size()));
+  }
+  return names;
 }
+
+bool NamesARun(const ChangeSet& set) { return !ParametersByRun(set).empty(); }
 
 std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& runs,
                                  const std::vector<std::string>& names) {

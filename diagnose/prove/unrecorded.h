@@ -30,7 +30,8 @@ std::vector<ChangeSet> SetsWithout(const std::set<std::string>& oil, const Expla
 // The same explanations with one name for all effects of the oil.
 ExplanationWeights AsOneClass(const std::set<std::string>& oil, ExplanationWeights weights);
 
-// Whether some value differs by run ("run.T_s").
+// The names of the parameters that differ by run ("T_s" for "run.T_s"), and whether there are any.
+std::vector<std::string> ParametersByRun(const ChangeSet& set);
 bool NamesARun(const ChangeSet& set);
 
 }  // namespace hydro::diagnose

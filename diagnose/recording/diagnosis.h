@@ -230,6 +230,7 @@ struct Diagnosis {
   std::vector<ChangedParameter> parameters;
   // Values that were refitted with the others and which the runs do not show to differ from those given.
   std::vector<std::string> unsure;
+  std::vector<std::string> by_run;     // names of values of which the set that was found has one for each run
   std::vector<std::string> not_shown;  // names of refitted values on which nothing in the runs depends
   std::vector<ValueByRun> per_run;
   std::vector<SignalGap> signals;

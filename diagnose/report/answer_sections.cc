@@ -107,7 +107,8 @@ bool IsWhatWasFound(const WeightedSet& explanation, const Diagnosis& diagnosis) 
     if (!is_value) terms.insert(change.substr(0, change.find('(')));
   }
   for (const FoundEffect& effect : diagnosis.effects) found.insert(effect.id);
-  if (terms.empty() && found.empty()) return explanation.changes.empty() == diagnosis.parameters.empty();
+  const bool as_given = diagnosis.parameters.empty() && diagnosis.by_run.empty();
+  if (terms.empty() && found.empty()) return explanation.changes.empty() == as_given;
   if (terms == found) return true;
   for (const Closure& closure : diagnosis.closures) found.insert(closure.id);
   return terms == found;
@@ -139,6 +140,9 @@ std::string WhatWasFound(const Diagnosis& diagnosis, bool si) {
   std::string out;
   for (const FoundEffect& effect : diagnosis.effects) out += Effect(diagnosis, effect, si);
   out += OwnParameters(diagnosis);
+  if (!diagnosis.by_run.empty())
+    out += "<p>" + page::TypesetHtml(Enumerated(diagnosis.by_run)) +
+           ", with a value of its own for each run (see what differs from run to run).</p>\n";
   return out.empty() ? "<p>Nothing was added to the model, and none of its values was changed.</p>\n" : out;
 }
 

@@ -46,20 +46,29 @@ std::string NoneAlone(const std::vector<std::string>& names) {
              : Enumerated(names) + " together, none of which these runs show alone (see the remarks)";
 }
 
-// Values that the runs show by themselves, then the names of the others: they may do most of the work.
+// Values that the runs show by themselves, then the names of those that they show beside others only. Values
+// whose intervals hold what was given are named where there are no others: they may do all of the work.
 std::vector<std::string> ParametersOf(const Diagnosis& d) {
   std::vector<std::string> clear, within, others;  // within: the interval holds the value as given
+  bool moved = false;                              // one of the others, away from what was given
+  const auto differs_by_run = [&](const std::string& name) {
+    return std::ranges::find(d.by_run, name) != d.by_run.end();
+  };
   for (const ChangedParameter& changed : d.parameters) {
+    if (differs_by_run(changed.fitted.name)) continue;
     const std::string now = ShortNumber(changed.fitted.value), before = ShortNumber(changed.model);
     const bool alone = !changed.resting && changed.fitted.shown && now != before;
     const bool holds = changed.fitted.low <= changed.model && changed.model <= changed.fitted.high;
     if (alone)
       (holds ? within : clear).push_back(changed.fitted.name + " = " + now + " instead of " + before);
-    if (!alone && (changed.resting || !changed.fitted.shown)) others.push_back(changed.fitted.name);
+    if (alone || !(changed.resting || !changed.fitted.shown)) continue;
+    others.push_back(changed.fitted.name);
+    moved = moved || (changed.resting && !holds);
   }
   std::vector<std::string> parameters = clear.empty() && d.effects.empty() ? within : clear;
-  if (parameters.empty()) others.insert(others.begin(), d.unsure.begin(), d.unsure.end());
-  if (d.effects.empty() && !others.empty()) parameters.push_back(NoneAlone(others));
+  if (parameters.empty() && !moved) others.insert(others.begin(), d.unsure.begin(), d.unsure.end());
+  if (d.effects.empty() && !others.empty() && d.by_run.empty()) parameters.push_back(NoneAlone(others));
+  for (const std::string& name : d.by_run) parameters.push_back(name + ", which differs from run to run");
   return parameters;
 }
 

@@ -181,6 +181,19 @@ TEST(ReportHtml, LeadsWithTheVerdict) {
                   "is off by 1.01 times the noise of the sensors; at 1 nothing but noise is left."));
 }
 
+// Tests that a value that each run has for itself is what was found, and what the weights say is likeliest.
+TEST(ReportHtml, AValueThatDiffersByRun) {
+  Diagnosis diagnosis = testing::EmptyDiagnosis();
+  diagnosis.explanations = {{{"run.T_s"}, 0.98}, {{}, 0.02}};
+  EXPECT_TRUE(Has(ReportHtml(diagnosis, false), "none of its values was changed"));
+  EXPECT_TRUE(Has(ReportHtml(diagnosis, false), "The likeliest of them is not"));
+  diagnosis.by_run = {"T_s"};
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_TRUE(Has(page, ", with a value of its own for each run"));
+  EXPECT_FALSE(Has(page, "none of its values was changed"));
+  EXPECT_FALSE(Has(page, "The likeliest of them is not"));
+}
+
 // Tests that explanations are in plain words, that the page says which hold the truth nine times in ten, and
 // which of them is what was found.
 TEST(ReportHtml, SaysWhatMayExplainTheRuns) {

@@ -269,7 +269,7 @@ TEST(Propose, AllCanBeJudgedOfWholeRecordings) {
 }
 
 // Tests that friction that differs by run is proposed with each run's own value, where the balances say
-// nothing else first.
+// nothing else first: beside other values, and beside all others as given.
 TEST(Propose, ValuesOfRuns) {
   std::vector<diagnose::RunData> runs;
   const double frictions[] = {1, 1.25, 0.75};
@@ -288,6 +288,14 @@ TEST(Propose, ValuesOfRuns) {
   ASSERT_NE(own, proposed.proposals.end());
   for (size_t r = 0; r < 3; ++r)
     EXPECT_NEAR(own->without[r].parameters.T_s / Table1().T_s, frictions[r], 0.05) << r;
+  EXPECT_THAT(own->by_run, ElementsAre("T_s"));
+  EXPECT_TRUE(std::ranges::any_of(proposed.proposals, [](const Proposal& one) {
+    return !one.by_run.empty() &&
+           std::ranges::all_of(model::BaseParameters(), [&](const model::BaseParameter& base) {
+             return base.info.name == one.by_run[0] ||
+                    one.model.parameters.*base.member == Table1().*base.member;
+           });
+  }));
 }
 
 // Tests that one and two threads propose the same bits.

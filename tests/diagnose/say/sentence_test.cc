@@ -122,6 +122,15 @@ TEST(Sentence, ValuesThatRestOnWhatIsKnown) {
   EXPECT_THAT(Said(d), AllOf(HasSubstr("b = "), Not(HasSubstr("J = ")), Not(HasSubstr("beta = "))));
   d.effects.clear();
   EXPECT_THAT(Said(d), HasSubstr("b = 1 instead of 0 and J, which these runs do not show by itself"));
+  // Beside a value that has moved, those that stay within their intervals are left to their remark.
+  J.model = 2;
+  J.fitted.low = 0.9;
+  J.fitted.high = 1.1;
+  d.parameters = {J};
+  d.unsure = {"D", "T_s"};
+  EXPECT_THAT(Said(d), HasSubstr("gap: J, which these runs do not show by itself"));
+  d.parameters[0].fitted.high = 3;
+  EXPECT_THAT(Said(d), HasSubstr("gap: D, T_s and J together"));
 }
 
 // Tests that a model that explains windows but not whole runs is said to leave more of these.
@@ -206,6 +215,19 @@ TEST(Sentence, AGapElsewhere) {
               HasSubstr("(the held-out gap over whole runs stays at 9 noise units)"));
   EXPECT_THAT(diagnose::Sentence(d, {{9, 9, 8}, 0, false, true}),
               HasSubstr("(fitted gap over whole runs 9 to 8 noise units)"));
+}
+
+// Tests that a value that each run has for itself is named, and not with one number or among those that no
+// run shows alone.
+TEST(Sentence, AValueThatDiffersByRun) {
+  diagnose::Diagnosis d = With(Verdict::kParameters);
+  d.effects.clear();
+  d.parameters.clear();
+  d.unsure = {"b", "T_s"};
+  EXPECT_THAT(Said(d), HasSubstr("b and T_s together, none of which"));
+  d.by_run = {"T_s"};
+  EXPECT_THAT(Said(d), StartsWith("The equations suffice with other values: T_s, which differs from run to "
+                                  "run (held-out gap"));
 }
 
 // Tests that a curve alone is no cause.
