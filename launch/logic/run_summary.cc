@@ -194,7 +194,7 @@ std::string RunSummary::SkippedTicksAdvice(const std::string& config) const {
 
 std::string FaultsLeftText(const std::vector<std::string>& left) {
   if (left.empty()) return "";
-  return fmt::format("the run ended with faults that hold the voltage at zero: {}", fmt::join(left, ", "));
+  return fmt::format("the run ended with active faults: {}", fmt::join(left, ", "));
 }
 
 std::vector<std::string> RunSummary::FaultsLeft(

@@ -25,7 +25,7 @@ struct ProcessStatus {
 // 79 characters.
 std::string StatusLine(const ProcessStatus& status);
 
-// "the run ended with faults that hold the voltage at zero: CODE of SOURCE, ...", of what
+// "the run ended with active faults: CODE of SOURCE, ...", of what
 // RunSummary::FaultsLeft() returns; empty when that is. A run that has such a text has failed.
 std::string FaultsLeftText(const std::vector<std::string>& left);
 

@@ -139,7 +139,7 @@ TEST(LaunchTest, AFaultAtTheEndIsAFailure) {
     auto launch = stack.Launch();
     EXPECT_EQ(launch->WaitForExit(), end.exit_code) << end.says << "\n" << launch->text();
     if (end.exit_code == 1) {
-      EXPECT_THAT(launch->err(), Contains(HasSubstr("hold the voltage at zero: ")));
+      EXPECT_THAT(launch->err(), Contains(HasSubstr("ended with active faults: ")));
     } else {
       EXPECT_THAT(launch->err(), IsEmpty());
     }

@@ -167,7 +167,7 @@ TEST(RunSummaryTest, FaultsAreCounted) {
               HasSubstr("pressure_limit of pressure_ctrl, 2 times, still there at the end: another cause"));
   EXPECT_THAT(summary.FaultsLeft(), testing::ElementsAre("pressure_limit of pressure_ctrl"));
   EXPECT_EQ(FaultsLeftText(summary.FaultsLeft()),
-            "the run ended with faults that hold the voltage at zero: pressure_limit of pressure_ctrl");
+            "the run ended with active faults: pressure_limit of pressure_ctrl");
   EXPECT_EQ(FaultsLeftText({}), "");
   fault.session = 2;  // another stack's pressure loop, say
   summary.Add(fault);
