@@ -140,7 +140,7 @@ void ProofSets::SetFitted(size_t leading) {
 void ProofSets::BeginAtGivenValues(ProvedSet* set) const {
   if (set->tested()) return;
   set->hypothesis.model.parameters = context_.given.parameters;
-  set->without.clear();
+  set->UseOneModel();
   JudgeSet(windows_, context_.jobs, set);
 }
 
@@ -153,6 +153,7 @@ void ProofSets::BeginAtBestValues(ProvedSet* set) const {
   other.hypothesis.model.parameters = sets_[values].hypothesis.model.parameters;
   for (size_t r = 0; r < other.without.size(); ++r)
     other.without[r].parameters = sets_[values].ModelOf(r).parameters;
+  other.by_run = sets_[values].by_run;
   JudgeSet(windows_, context_.jobs, &other);
   if (PredictsBetter(windows_, context_.jobs, &other, set)) *set = std::move(other);
 }
@@ -237,12 +238,13 @@ void ProofSets::Race(size_t from, const Change& change) {
 }
 
 bool ProofSets::IsSeenByBalances(size_t base) const {
-  constexpr double kMuchMore = 0.5;  // of the uncertainty: what is known beforehand does not weigh in then
+  // With half the uncertainty, the runs know three times as much of the value as was known beforehand.
+  constexpr double kSeen = 0.5;
   const double known = model::UncertaintyOf(context_.given, base);
   return std::ranges::any_of(sets_, [&](const ProvedSet& set) {
     if (set.hypothesis.measured == nullptr) return false;
     const auto found = set.hypothesis.measured->deviation.find(base);
-    return found != set.hypothesis.measured->deviation.end() && found->second < kMuchMore * known;
+    return found != set.hypothesis.measured->deviation.end() && found->second < kSeen * known;
   });
 }
 
@@ -298,7 +300,7 @@ bool ProofSets::RaceValues() {
 
 size_t ProofSets::WithGivenValues(size_t place) {
   ProvedSet sparse = sets_[place];
-  sparse.without.clear();
+  sparse.UseOneModel();
   sparse.refined = false;
   sparse.hypothesis.model.parameters = context_.given.parameters;
   sparse.hypothesis.base.clear();

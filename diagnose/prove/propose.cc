@@ -142,8 +142,11 @@ std::optional<Proposal> OneValueAlone(const ProofContext& context, const std::ve
     model->parameters.*base->member = estimated.parameters.*base->member;
   };
   keep_one(all.model, &alone.model);
-  for (size_t r = 0; r < alone.without.size(); ++r) keep_one(all.without[r], &alone.without[r]);
-  if (by_run) alone.without = ModelsOfRuns(context, allowed, alone.model, all.by_run);
+  if (by_run) {
+    alone.without = ModelsOfRuns(context, allowed, alone.model, all.by_run);
+  } else {
+    for (size_t r = 0; r < alone.without.size(); ++r) keep_one(all.without[r], &alone.without[r]);
+  }
   alone.base = {static_cast<size_t>(base - bases.begin())};
   return alone;
 }

@@ -17,7 +17,7 @@ struct ProvedSet {
   // When runs are held out in turn, the same model without each run. Empty: the hypothesis' model predicts
   // all runs.
   std::vector<model::ModelDescription> without;
-  std::vector<std::string> by_run;  // as of the proposal; without meaning where `without` is empty
+  std::vector<std::string> by_run;  // parameters of which each of these models has its run's own value
   std::vector<WindowGap> near;
   std::vector<WindowGap> far;   // empty until a comparison needs them
   double weight = 0;            // of the proposal; 0 if it was not proposed
@@ -25,6 +25,11 @@ struct ProvedSet {
   bool refined = false;         // refined as far as comparison of sets needs
   std::optional<size_t> begun;  // the place of the set whose values it was last tried with
 
+  // From here on the hypothesis' model predicts all runs.
+  void UseOneModel() {
+    without.clear();
+    by_run.clear();
+  }
   bool tested() const { return IsTested(near); }
   std::vector<Change> Effects() const;  // the changes other than values
   bool HasCurve() const;                // whether one of them is an unknown curve

@@ -100,7 +100,7 @@ void RefineValues(const ProofContext& context, const std::vector<const RunData*>
     MoveToLikeliestScale(context.given, &at.hypothesis);
     ProvedSet refined = *set;
     refined.hypothesis = at.hypothesis;
-    refined.without.clear();
+    refined.UseOneModel();
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(windows, context.jobs, &refined, set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;

@@ -106,7 +106,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
     d.explanations.push_back({one.changes, one.weight});
   d.set_90 = proposed.weights.in_90;
   d.model = proof.Found().model;
-  if (const ProvedSet& best = proof.sets[proof.best]; !best.without.empty()) d.by_run = best.by_run;
+  d.by_run = proof.sets[proof.best].by_run;
   const std::vector<model::ModelDescription> tied = DescribeFound(context, proof, &d);
   const WholeRuns whole = OverWholeRuns(context, proof);
   DescribeGaps(context, whole, &d);

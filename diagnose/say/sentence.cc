@@ -57,11 +57,11 @@ std::vector<std::string> ParametersOf(const Diagnosis& d) {
   for (const ChangedParameter& changed : d.parameters) {
     if (differs_by_run(changed.fitted.name)) continue;
     const std::string now = ShortNumber(changed.fitted.value), before = ShortNumber(changed.model);
-    const bool alone = !changed.resting && changed.fitted.shown && now != before;
+    const bool beside = changed.resting || !changed.fitted.shown;
     const bool holds = changed.fitted.low <= changed.model && changed.model <= changed.fitted.high;
-    if (alone)
+    if (!beside && now != before)
       (holds ? within : clear).push_back(changed.fitted.name + " = " + now + " instead of " + before);
-    if (alone || !(changed.resting || !changed.fitted.shown)) continue;
+    if (!beside) continue;
     others.push_back(changed.fitted.name);
     moved = moved || (changed.resting && !holds);
   }

@@ -207,22 +207,25 @@ class Cluster:
 
     def queue(self):
         """The tasks that wait or run, each as "JOB INDEX STATE". One whose node still tidies up after it (COMPLETING) has ended."""
+        return [task for task in self._whole_queue() if not task.endswith(" COMPLETING")]
+
+    def _whole_queue(self):
         answers = []
 
         def ask():
-            done = subprocess.run(["squeue", "-h", "-r", "-t", "PENDING,RUNNING,SUSPENDED,COMPLETING", "-o", "%F %K %T"],
-                                  env=self.environment, capture_output=True, text=True, timeout=PATIENCE, check=False)
-            answers.append(done.stdout.splitlines())
+            done = subprocess.run(["squeue", "-h", "-r", "-o", "%F %K %T"], env=self.environment, capture_output=True, text=True,
+                                  timeout=PATIENCE, check=False)
+            answers.append(done)
             return done.returncode == 0
 
         self._wait_until(ask, "squeue answers")
-        return [task for task in answers[-1] if not task.endswith(" COMPLETING")]
+        return answers[-1].stdout.splitlines()
 
     def cancel_all(self):
         """Ends all jobs, and waits until the queue is empty."""
         self.ask("scancel", "--state=PENDING", "--user=" + getpass.getuser())
         self.ask("scancel", "--user=" + getpass.getuser())
-        self._wait_until(lambda: not self.ask("squeue", "--noheader"), "an empty queue")
+        self._wait_until(lambda: not self._whole_queue(), "an empty queue")
 
     def processes(self, variables=None):
         """The process ids of all that belongs to this cluster, its jobs too, or of those with these variables in their environment."""
