@@ -293,6 +293,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
     if (!requests.empty()) diagnosis.remarks.push_back(requests);
   }
   AddChecked(checked, &diagnosis);
+  if (!diagnosis.by_run.empty()) diagnosis.remarks.push_back(RemarkOnOwnValues(diagnosis.by_run));
   if (!diagnosis.choices.empty()) diagnosis.remarks.push_back(ChoiceRemark(diagnosis.choices));
   if (limit.struck()) diagnosis.sentence = limit.Remark() + diagnosis.sentence;
   diagnosis.recording = std::move(prepared.clocks);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "base/word_list.h"
 #include "diagnose/evidence/run_values.h"
 #include "diagnose/fit/intervals.h"
 #include "diagnose/prove/proved_set.h"
@@ -154,6 +155,13 @@ std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::Mo
     values = {std::move(value)};
   }
   return values;
+}
+
+std::string RemarkOnOwnValues(const std::vector<std::string>& by_run) {
+  const std::string names = Enumerated(by_run);
+  return names +
+         " of each run was estimated from that run itself, so the held-out gap tests everything but " +
+         names + ", which windows that were kept from the estimate test (per_run in report.json)";
 }
 
 std::string RemarkOn(const ValueByRun& value) {

@@ -18,6 +18,9 @@ std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::Mo
                                     const std::vector<std::string>& asked,
                                     const std::vector<size_t>& allowed);
 
+// What tests values of which the set that was found has one for each run.
+std::string RemarkOnOwnValues(const std::vector<std::string>& by_run);
+
 // "T_s differs from run to run by 6 % (3.3 to 3.9 in-lbf)", followed by its effect on the gap.
 std::string RemarkOn(const ValueByRun& value);
 

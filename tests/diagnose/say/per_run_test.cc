@@ -51,6 +51,8 @@ TEST(ValuesByRun, FrictionOfTheDay) {
   EXPECT_NEAR(found[0].Spread(), 0.2, 0.02);
   EXPECT_LT(found[0].after, 0.8 * found[0].before);
   EXPECT_THAT(diagnose::RemarkOn(found[0]), HasSubstr("T_s differs from run to run by 20 %"));
+  EXPECT_THAT(diagnose::RemarkOnOwnValues({"T_s"}),
+              HasSubstr("so the held-out gap tests everything but T_s, which windows"));
   // The parts of a single recording are no runs.
   const diagnose::ValueByRun parts{
       "T_s", "in-lbf", {{"rig", 4, 4, 4, ""}, {"rig, last third", 6, 6, 6, ""}}, 2, 1};
