@@ -68,7 +68,9 @@ void MotorCommands::OnMotorCommand(const motor_command_t& command) {
   // While a second sender is heard too, neither sender's commands act, even if one of them has long been
   // silent when the tick comes (lockstep waits).
   if (monitor_.SecondSenderAlive(now)) obeyed_from_ = std::max(obeyed_from_, command.tick + 1);
-  future_command_ = false;
+  // The fault outlives the tick of its detection, so that it is told even where the good command came with
+  // it.
+  if (future_refused_at_ && *future_refused_at_ < tick_) future_refused_at_.reset();
   if (const auto taken = round_trips_.OnAnswer(command.tick, now)) {
     participant_.statistics().RecordRoundTrip(*taken);
   }
@@ -95,7 +97,7 @@ void MotorCommands::ForgetAllOf(int64_t session) {
 }
 
 void MotorCommands::RefuseFutureCommand(const motor_command_t& command) {
-  future_command_ = true;
+  future_refused_at_ = tick_;
   safety_.Set(VoltageGuard::Cause::kFutureCommand, true, [&] {
     return OutputSafety::Finding{
         fmt::format("a motor command for tick {} at tick {}; is another run's log being played?",
@@ -138,7 +140,7 @@ const motor_command_t* MotorCommands::Obeyed(bool held) {
 
 bool MotorCommands::AllIsWell(bus::Clock::TimePoint now) const {
   const double voltage = command_ ? command_->voltage : 0;
-  if (!(std::fabs(voltage) <= voltage_limit_) || future_command_) return false;
+  if (!(std::fabs(voltage) <= voltage_limit_) || future_refused_at_) return false;
   if (monitor_.SecondSenderAlive(now) || second_heard_) return false;
   return !realtime_ || (AgeOfAnswer() <= stale_time_ && !slept_ && repeated_.IsQuiet(monitor_.duplicates()));
 }
@@ -180,7 +182,7 @@ void MotorCommands::CheckSenders(bus::Clock::TimePoint now) {
   using Cause = VoltageGuard::Cause;
   using Finding = OutputSafety::Finding;
   // The sender contradicts itself, so the command before this one is no more trustworthy.
-  safety_.Set(Cause::kFutureCommand, future_command_, [] { return Finding{}; });
+  safety_.Set(Cause::kFutureCommand, future_refused_at_.has_value(), [] { return Finding{}; });
   // In lockstep a tick may wait for longer than a sender counts as alive.
   safety_.Set(Cause::kSecondCommandSender, monitor_.SecondSenderAlive(now) || second_heard_, [&] {
     const auto [one, other] = second_heard_.value_or(Senders{monitor_.session(), monitor_.second_session()});

@@ -101,7 +101,8 @@ class MotorCommands {
   bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   bus::SequenceMonitor monitor_;
   process::CountedWarning repeated_{"repeated_motor_command"};
-  bool future_command_ = false;          // the newest command is for a tick that has not come yet
+  std::optional<int64_t>
+      future_refused_at_;                // tick: the last command for a future tick, until a later good one
   std::optional<Senders> second_heard_;  // since the last check
   std::optional<Sleep> slept_;  // real time: the last long one, until a command answers a later state
   timing::RoundTripMonitor round_trips_;

@@ -95,7 +95,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   const bool future =
       participant().tick() >= 0 && command.tick > SaturatingSum(participant().tick(), stale_ticks_);
   if (future && !command_monitor_.FollowsAnother(command.session, now)) {
-    future_command_ = command.tick;
+    future_command_ = FutureCommand{command.tick, participant().tick()};
     return;
   }
   const auto verdict = command_monitor_.Observe(command.session, command.sequence, now);
@@ -103,7 +103,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
   if (verdict == bus::SequenceMonitor::Verdict::kRestarted) ForgetPressureCommands();
-  future_command_.reset();
+  if (future_command_ && future_command_->at < participant().tick()) future_command_.reset();
   waiting_commands_.push_back(command);
   if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {
     const state_t state = *pending_state_;

@@ -120,11 +120,14 @@ class PressureApp : public process::ControlLoop {
   bus::SequenceMonitor command_monitor_;
   RingQueue<pressure_command_t> waiting_commands_;      // not yet in force, in order of their ticks
   std::optional<pressure_command_t> pressure_command_;  // in force
-  // Tick of a refused command, until a plausible one comes.
-  std::optional<int64_t> future_command_;
-  std::optional<state_t> pending_state_;  // lockstep: waits for the pressure command that it needs
-  motor_command_t command_{};             // the last command, or the one being made
-  bool acted_by_law_ = false;             // it came from the law
+  struct FutureCommand {
+    int64_t named;  // the tick that it answers
+    int64_t at;     // the tick at which it came
+  };
+  std::optional<FutureCommand> future_command_;  // refused; until a plausible one comes at a later tick
+  std::optional<state_t> pending_state_;         // lockstep: waits for the pressure command that it needs
+  motor_command_t command_{};                    // the last command, or the one being made
+  bool acted_by_law_ = false;                    // it came from the law
   int64_t sequence_ = 0;
 };
 

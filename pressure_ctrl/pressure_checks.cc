@@ -127,11 +127,12 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state, int64_t ticks_stal
                       "(limits.arm_torque / k_2)",
                       pressure_command_->tick, reference, largest, fmt::arg("unit", units_.UnitFor("psi")));
                 });
-  safe &= Check(!future_command_, "future_pressure_command", static_cast<double>(future_command_.value_or(0)),
+  const int64_t named = future_command_ ? future_command_->named : 0;
+  safe &= Check(!future_command_, "future_pressure_command", static_cast<double>(named),
                 static_cast<double>(state.tick), [&] {
                   return fmt::format(
-                      "a pressure command for tick {} at tick {}; is another run's log being played?",
-                      future_command_.value_or(0), state.tick);
+                      "a pressure command for tick {} at tick {}; is another run's log being played?", named,
+                      state.tick);
                 });
   safe &=
       Check(!command_monitor_.SecondSenderAlive(now), process::kSecondSender<pressure_command_t>, 2, 1, [&] {

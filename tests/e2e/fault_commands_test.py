@@ -144,6 +144,13 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
         self.assertNotIn("stale_motor_command", {f.code for f in log.faults})
 
+    # Tests that it is told even where the good command has come before the plant looks, as on a busy machine.
+    def test_one_far_tick_beside_a_good_one(self):
+        self.run_with(self.once(lambda s: [repeated(voltage=2.0, tick=1 << 62), repeated()]))
+        self.wait_for_fault("future_motor_command")
+        self.wait_for_fault("future_motor_command", active=False)
+        self.finish()
+
     # Tests the same for a sequence number that the loop never reaches.
     def test_one_far_number(self):
         def commands(state):

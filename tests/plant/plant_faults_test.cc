@@ -376,6 +376,17 @@ TEST_F(PlantFaultsTest, OneFutureCommandDeafensNobody) {
   ExpectVoltage(53, 100, 1.5);
 }
 
+// Tests that it is told even where the good one has come before the plant looks, as on a busy machine.
+TEST_F(PlantFaultsTest, OneFutureCommandBesideAGoodOneIsTold) {
+  on_state_ = [this](const state_t& s) {
+    if (s.tick == 50) Answer(int64_t{1} << 62, voltage_);
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+future_motor_command", "-future_motor_command"));
+  ExpectVoltage(52, 52, 0);
+  ExpectVoltage(53, 100, 1.5);
+}
+
 // Tests that one with a far sequence number deafens it for no longer than stale_input_s, so that the last
 // voltage stays in force until then.
 TEST_F(PlantFaultsTest, OneFarNumberDeafensNobody) {

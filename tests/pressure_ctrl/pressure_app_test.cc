@@ -386,6 +386,25 @@ TEST_F(PressureAppTest, FuturePressureCommandGivesZeroVolts) {
   EXPECT_FALSE(faults_.back().active);
 }
 
+// Tests that it is told even where a plausible command has come before the next state.
+TEST_F(PressureAppTest, FuturePressureCommandBesideAGoodOneIsTold) {
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
+  Start(config);
+  SendPressure(0, 120);
+  SendState(State(0));
+  SendPressure(1000, 300);
+  SendPressure(0, 120, 1);
+  SendState(State(1));
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  SendPressure(1, 120, 2);
+  SendState(State(2));
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  ASSERT_EQ(faults_.size(), 2u);
+  EXPECT_EQ(faults_[0].code, "future_pressure_command");
+  EXPECT_FALSE(faults_[1].active);
+}
+
 // Tests that an arm beyond its limit trips as a pressure does.
 TEST_F(PressureAppTest, ArmAngleLimitTrips) {
   settings::StackConfig config = SmallStack();
