@@ -105,7 +105,7 @@ int PlantApp::End() {
 
 void PlantApp::OnRigError(const RigError& error) {
   const auto explain = [&] {
-    participant_.Raise(error.code(), error.what(), NAN, NAN, true);
+    participant_.Raise(error.code(), error.what(), error.value(), error.limit(), true);
     participant_.RequestStop(error.what(), 1);
   };
   rig_.set_when_late(explain);

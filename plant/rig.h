@@ -30,11 +30,17 @@ inline constexpr int kGoodReadings = 10;
 // Thrown when the rig cannot go on: the run then ends with the latched fault code() and exit code 1.
 class RigError : public std::runtime_error {
  public:
-  RigError(std::string code, const std::string& text) : std::runtime_error(text), code_(std::move(code)) {}
+  // `value` was found where `limit` is allowed; NaN: the fault is of no number.
+  RigError(std::string code, const std::string& text, double value = std::numeric_limits<double>::quiet_NaN(),
+           double limit = std::numeric_limits<double>::quiet_NaN())
+      : std::runtime_error(text), code_(std::move(code)), value_(value), limit_(limit) {}
   const std::string& code() const { return code_; }
+  double value() const { return value_; }
+  double limit() const { return limit_; }
 
  private:
   std::string code_;
+  double value_, limit_;
 };
 
 // What the output held after zero volts were written.

@@ -123,7 +123,8 @@ RigError SimulatedRig::Explained(const model::ModelError& error, int64_t tick, b
   return {"arm_angle_limit",
           fmt::format("before tick {} the arm was at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
                       "(limits.arm_angle), and left its cylinder while the plant was late",
-                      tick, angle, largest_angle_, fmt::arg("unit", units_.UnitFor("rad", 1)))};
+                      tick, angle, largest_angle_, fmt::arg("unit", units_.UnitFor("rad", 1))),
+          std::fabs(angle), largest_angle_};
 }
 
 }  // namespace hydro::plant

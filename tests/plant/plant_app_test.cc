@@ -467,6 +467,8 @@ TEST_F(PlantAppTest, SleepingThroughALimitNamesTheLimit) {
   ASSERT_FALSE(faults_.empty());
   EXPECT_EQ(faults_.back().code, "arm_angle_limit");
   EXPECT_TRUE(faults_.back().latched);
+  EXPECT_GT(faults_.back().value, 0.8);
+  EXPECT_EQ(faults_.back().limit, 0.8);
   EXPECT_THAT(failure_, HasSubstr("allowed is |alpha| <= 0.8 rad (limits.arm_angle)"));
 }
 

@@ -16,6 +16,9 @@ export const kToken = 'f00df00df00df00df00df00df00df00d';
 // How long to wait for what should come soon. Nothing passes because of it, so it may be long: the machine is
 // shared.
 export const kPatience_ms = 90000;
+// Sets for launch(): a motion so gentle that a command held for a second, while a browser starts or axe counts, does not carry the arm
+// out of its cylinder.
+export const kGentle = ['reference.amplitude=0.05', 'limits.arm_torque=60'];
 
 export function demoConfig() {
   return path.join(kConfig, 'demo.toml');
