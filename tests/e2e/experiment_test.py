@@ -11,9 +11,6 @@ import stack
 # All of them take well under 30 s on two free cores, but this machine may be shared.
 LONG = 240
 
-# What the programs say where the machine leaves a real-time loop no time.
-TOO_LATE = "because this machine woke the process too late"
-
 # The keys that contract and documentation promise; "a.b" is nested.
 KEYS = {
     "fig2": ["table1.sticks", "stribeck.sticks", "stribeck.period_s", "stribeck.swing_psi"],
@@ -119,7 +116,7 @@ class ExperimentTest(stack.TestCase):
         """Figure 5's stack as separate processes: its numbers are near those of simulated time."""
         self.experiment("fig5", "--out", self.path("lockstep"))
         run = self.start("hydro-experiment", "fig5", "--real-time", "--out", self.path("realtime"))
-        if run.wait(LONG) == 1 and TOO_LATE in run.stderr:  # the program's own verdict on the machine
+        if run.wait(LONG) == 1 and stack.TOO_LATE in run.stderr:  # the program's own verdict on the machine
             self.skipTest("the machine woke the plant too late for 5000 Hz: " + run.stderr.strip()[:200])
         self.assertEqual(run.wait(), 0, run.report())
         logs = [name for name in os.listdir(self.path("realtime/runs")) if name.endswith(".lcmlog")]

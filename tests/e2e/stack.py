@@ -31,6 +31,9 @@ PATIENCE = 60
 # a process on two cores that others keep busy may get its turn a few hundred milliseconds late.
 MACHINE_MARGIN = 2.5
 
+# What the programs say where the machine leaves a loop in real time no time for its ticks.
+TOO_LATE = "because this machine woke the process too late"
+
 PROGRAMS = {
     "plant": "hydro-plant",
     "driver": "hydro-driver",
