@@ -32,6 +32,16 @@ double model::Parameters::*MemberOf(const Change& value) {
   return model::BaseParameters()[model::BasePlace(value.parameter)].member;
 }
 
+// The same windows, with those that are fitted as judges: whatever moves a value must not see the runs that
+// prove it.
+ProofWindows JudgedByFitted(ProofWindows windows) {
+  const std::shared_ptr<KnownTurns> turns =
+      windows.near.turns == nullptr ? nullptr : std::make_shared<KnownTurns>(windows.fitted.size());
+  windows.near = {windows.near.seconds, windows.fitted, std::vector<size_t>(windows.fitted.size(), 0), turns};
+  windows.far = {};
+  return windows;
+}
+
 }  // namespace
 
 ProofSets::ProofSets(const ProofContext& context, const Hypothesis& as_given,
@@ -249,14 +259,16 @@ bool ProofSets::IsSeenByBalances(size_t base) const {
 }
 
 std::optional<ProvedSet> ProofSets::BestSingleValue() {
-  const ProvedSet given = sets_[kGiven];
+  const ProofWindows fitted = JudgedByFitted(windows_);
+  ProvedSet given = sets_[kGiven];
+  JudgeSet(fitted, context_.jobs, &given);
   std::optional<ProvedSet> best;
   const auto moved = [&](const Change& change, const ProvedSet& from, double factor) {
     ProvedSet one = from;
     one.hypothesis.changes = {change};
     one.hypothesis.base = {model::BasePlace(change.parameter)};
     one.hypothesis.model.parameters.*MemberOf(change) *= factor;
-    JudgeSet(windows_, context_.jobs, &one);
+    JudgeSet(fitted, context_.jobs, &one);
     if (PredictsBetter(one, best ? *best : given)) best = one;
     return one;
   };
@@ -277,6 +289,7 @@ std::optional<ProvedSet> ProofSets::BestSingleValue() {
     const ProvedSet middle = *best;
     for (const double factor : {1 / step, step}) moved(middle.hypothesis.changes.front(), middle, factor);
   }
+  if (best) JudgeSet(windows_, context_.jobs, &*best);
   return best;
 }
 

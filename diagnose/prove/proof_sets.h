@@ -71,7 +71,8 @@ class ProofSets {
   void BeginAtGivenValues(ProvedSet* set) const;
   void BeginAtBestValues(ProvedSet* set) const;
   void RefineOnWholeRuns(ProvedSet* set) const;
-  // The model as given with the one other value that predicts the windows best; nothing where none helps.
+  // The model as given with the one other value that predicts the fitted windows best, judged by the others;
+  // nothing where none helps.
   std::optional<ProvedSet> BestSingleValue();
   // Whether the balances of some set say much more of this base value than the model does.
   bool IsSeenByBalances(size_t base) const;

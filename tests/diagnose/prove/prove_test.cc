@@ -74,6 +74,19 @@ TEST_F(ProveTest, AValueThatNoBalanceShows) {
   EXPECT_LE(TypicalGap(proved.Best().near), diagnose::kCloseEnough);
 }
 
+// Tests that held-out runs of another machine than the fitted ones move no value: what is to be proved by a
+// run is not fitted to it.
+TEST_F(ProveTest, HeldOutRunsMoveNoValue) {
+  model::ModelDescription other = Table1With();
+  other.parameters.k_1 *= 1.2;
+  Record(Table1With());
+  for (const int which : {1, 4}) runs_[which] = SmallRun(other, model::Shaft::kClamped, false, 2, which, 7);
+  context_.changes = {{"", {}, "k_1"}};
+  const Proof proved = Prove({Proposed({}, {})});
+  EXPECT_EQ(proved.Best().hypothesis.model.parameters.k_1, Table1().k_1);
+  EXPECT_GT(TypicalGap(proved.Best().near), 3) << "as far as the machines differ";
+}
+
 // Tests that an estimate far from the truth does not make the refit worse than the model as given.
 TEST_F(ProveTest, RefitIsNeverWorse) {
   Record(Table1With({Drag(5e-5)}));
