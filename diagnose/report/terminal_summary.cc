@@ -101,6 +101,11 @@ void CommentOnValues(const Diagnosis& diagnosis, const model::ModelDescription& 
     if (changed.resting) comment += "; it rests on how well the model's values are known";
     if (changed.implausible) comment += "; implausible";
   }
+  for (const std::string& name : diagnosis.by_run) {
+    (*comments)["parameters." + name] =
+        "between the runs' own values, which the report lists; was " +
+        ShortNumber(given.parameters.*model::BaseParameters()[model::BasePlace(name)].member);
+  }
   for (const ValueByRun& value : diagnosis.per_run) {
     std::string& comment = (*comments)["parameters." + value.name];
     comment += (comment.empty() ? "" : "; ") +

@@ -68,6 +68,16 @@ void RemarkOnWholeRuns(const BeforeAfter& gap, const BeforeAfter& of_fitted,
   }
 }
 
+// Says where only the held-out runs differ from the model: then nothing that was fitted can close the gap.
+void RemarkOnOtherMachine(const BeforeAfter& held_out, const BeforeAfter& fitted,
+                          std::vector<std::string>* remarks) {
+  const double noise = fitted.before * fitted.before, apart = held_out.before * held_out.before;
+  if (!(noise <= kCloseEnough && apart > kNoiseAndAsMuchAgain * kCloseEnough)) return;
+  remarks->push_back("The model as given predicts the fitted runs to the noise (" +
+                     ShortNumber(fitted.before, 3) + ") and the held-out runs not (" +
+                     ShortNumber(held_out.before, 3) + "): these may be of another machine, load or setting");
+}
+
 // Shows where each effect that was found acts, or where it is visible.
 void ShowEffects(const ProofContext& context, const Proof& proof, const WholeRuns& whole, Diagnosis* d) {
   for (const FoundEffect& effect : d->effects) {
@@ -125,6 +135,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
     return Conclude(context, nothing, proposed);
   }
   HearBothWitnesses(proof, &d);
+  RemarkOnOtherMachine(d.held_out, d.fit, &d.remarks);
   if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, d.fit, &d.remarks);
   if (d.verdict == Verdict::kNothingMissing && growth > kMultiplies)
     d.remarks.push_back("An error of a start grows " + ShortNumber(growth, 2) +

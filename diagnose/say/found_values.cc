@@ -122,7 +122,8 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
     const bool follows = held && number.is_base;
     const bool as_given = number.given >= interval.low && number.given <= interval.high;
     if (follows || (hypothesis.known != nullptr && as_given)) {
-      if (!LooksTheSame(number)) {
+      const bool by_run = std::ranges::find(d->by_run, number.name) != d->by_run.end();
+      if (!by_run && !LooksTheSame(number)) {
         d->unsure.push_back(number.name);
         unsure.push_back(number.name + " = " + ShortNumber(number.found) + " (was " +
                          ShortNumber(number.given) + ")");

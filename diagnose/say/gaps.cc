@@ -145,7 +145,10 @@ WholeRuns OverWholeRuns(const ProofContext& context, const Proof& proof) {
   WholeRuns whole;
   for (size_t m = 0; m < kComparedModels; ++m) {
     const ProvedSet& set = *SetsOf(proof)[m];
-    whole.fitted[m] = GapsOfEach(set.hypothesis.model, context.runs, context.jobs);
+    // Where each run has a value of its own, there is no common model that fits.
+    const bool own = context.held_out.empty() && !set.by_run.empty();
+    whole.fitted[m] =
+        own ? OverRuns(context, set) : GapsOfEach(set.hypothesis.model, context.runs, context.jobs);
     if (context.held_out.empty() && set.without.empty()) {
       whole.held_out[m] = whole.fitted[m];
       continue;
