@@ -128,6 +128,8 @@ double Sizes::Of(model::Scale scale) const {
       return 1;
     case model::Scale::kTorque:
       return torque;
+    case model::Scale::kInertia:
+      return inertia;
     case model::Scale::kSpeed:
       return speed;
     case model::Scale::kPressure:
@@ -183,6 +185,7 @@ Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunD
   Sizes sizes;
   const model::Parameters& p = model.parameters;
   sizes.torque = p.T_pmax;
+  sizes.inertia = p.J;
   sizes.charge = p.p_3 > 0 ? p.p_3 : 0.01 * p.T_pmax / p.D;
   for (const RunData* run : runs) {
     sizes.speed = std::max({sizes.speed, LargestOf(run->Find(model::Channel::kMotorSpeed)),
@@ -210,14 +213,29 @@ std::vector<double> StartsOf(const model::ParameterInfo& parameter, const Sizes&
   return starts;
 }
 
+// Frees the base parameter, if it is not free already.
+void FreeValue(size_t place, Hypothesis* hypothesis) {
+  if (std::ranges::find(hypothesis->base, place) == hypothesis->base.end()) hypothesis->base.push_back(place);
+}
+
+// Adds to the starts of the last effect those that take half of the base parameter for the effect's number.
+void AddShared(const model::ParameterInfo& number, size_t place, std::vector<Hypothesis>* starts) {
+  for (size_t i = 0, size = starts->size(); i < size; ++i) {
+    Hypothesis shared = (*starts)[i];
+    shared.model.effects.back().parameters[number.name] = shared.model.parameters.*number.part_of *= 0.5;
+    FreeValue(place, &shared);
+    starts->push_back(std::move(shared));
+  }
+}
+
 }  // namespace
 
-std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes) {
+std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
+                             const std::vector<size_t>& movable) {
   Hypothesis more = hypothesis;
   more.changes.push_back(change);
   if (change.effect.empty()) {
-    const size_t place = model::BasePlace(change.parameter);
-    if (std::ranges::find(more.base, place) == more.base.end()) more.base.push_back(place);
+    FreeValue(model::BasePlace(change.parameter), &more);
     return {more};
   }
   const model::EffectInfo& info = *model::FindEffect(change.effect);
@@ -234,6 +252,12 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
       }
     }
     all = std::move(next);
+  }
+  for (const model::ParameterInfo& parameter : info.parameters) {
+    if (parameter.part_of == nullptr || !IsFitted(info, parameter)) continue;
+    for (const size_t place : movable) {
+      if (model::BaseParameters()[place].member == parameter.part_of) AddShared(parameter, place, &all);
+    }
   }
   return all;
 }

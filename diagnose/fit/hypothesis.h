@@ -94,7 +94,7 @@ bool IsFitted(const model::EffectInfo& effect, const model::ParameterInfo& numbe
 
 // Magnitudes seen in the runs; they scale starting values.
 struct Sizes {
-  double torque = 0, speed = 0, pressure = 0, charge = 0, sample = 0;
+  double torque = 0, inertia = 0, speed = 0, pressure = 0, charge = 0, sample = 0;
   double flow = 0, arm_stiffness = 0, arm_damping = 0, oil_stiffness = 0;
 
   double Of(model::Scale scale) const;
@@ -102,7 +102,10 @@ struct Sizes {
 Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunData*>& runs);
 
 // The hypothesis with an effect added, once for each of its starting points, or with a base parameter freed.
-std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes);
+// Where the model may count a number of the effect in a base parameter of `movable` (places in
+// BaseParameters()), there are starts with that parameter freed too.
+std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
+                             const std::vector<size_t>& movable);
 // The hypothesis with the change undone; base parameters return to their values in `given`.
 Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const model::ModelDescription& given);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "base/parallel.h"
@@ -14,8 +15,9 @@ namespace {
 // As a fraction of what an effect has to gain: with a smaller gain, refining the other values does not make
 // up for the rest.
 constexpr double kWorthRefining = 0.5;
-// From the catalogue's starts, which differ by factors of 2 to 6.
-constexpr int kStepsOfARace = 2;
+// From the catalogue's starts, which differ by factors of 2 to 6. Whoever asks for an effect by name knows
+// that the machine may have it, so its fit may find a longer way.
+constexpr int kStepsOfARace = 2, kStepsOfARequest = 8;
 
 }  // namespace
 
@@ -38,36 +40,40 @@ std::vector<Change> BlindChanges(const ProofContext& context) {
     if (late_speed && !angle) blind.push_back(change);
     // A sensor's sign has already been settled.
     const bool is_blind = IsUnseenByBalances(change.effect) && change.names.empty();
-    if (is_blind && oil && (free || !change.effect.starts_with("arm."))) blind.push_back(change);
+    const bool shows = oil || !model::FindEffect(change.effect)->needs_oil;
+    if (is_blind && shows && (free || !change.effect.starts_with("arm."))) blind.push_back(change);
   }
   return blind;
 }
 
 ProvedSet RacedFrom(const ProofContext& context, const std::vector<const RunData*>& fitted,
                     const ProofWindows& windows, const ProvedSet& set, const Change& change) {
-  const std::vector<Hypothesis> starts = With(set.hypothesis, change, context.sizes);
+  const std::vector<Hypothesis> starts = With(set.hypothesis, change, context.sizes, MovableValues(context));
   const std::vector<model::StartState> from = CorrectedStarts(set.hypothesis.model, fitted, context.jobs);
   FitOptions options;
-  options.most_iterations = kStepsOfARace;
+  const bool asked = model::FindEffect(change.effect)->on_request;
+  options.most_iterations = asked ? kStepsOfARequest : kStepsOfARace;
   options.tolerance = kToCompare;
   options.at_turn = true;
   std::vector<Fitted> fits(starts.size());
   ParallelFor(starts.size(), context.jobs, [&](size_t i) {
     Hypothesis alone = starts[i];
-    alone.base.clear();
+    std::erase_if(alone.base, [&](size_t place) {  // but not what the start itself frees
+      return std::ranges::find(set.hypothesis.base, place) != set.hypothesis.base.end();
+    });
     alone.known = nullptr;
     alone.effects = {change.effect};
     fits[i] = Fit(alone, fitted, from, options);
   });
-  const Fitted* best = nullptr;
-  for (const Fitted& fit : fits) {
-    if (fit.ok() && (best == nullptr || fit.sum < best->sum)) best = &fit;
+  std::optional<size_t> best;
+  for (size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i].ok() && (!best || fits[i].sum < fits[*best].sum)) best = i;
   }
   ProvedSet raced;
-  raced.hypothesis = starts.front();
+  raced.hypothesis = starts[best.value_or(0)];
   raced.hypothesis.measured = nullptr;  // without the change
-  if (best == nullptr) return raced;
-  raced.hypothesis.model = best->hypothesis.model;
+  if (!best) return raced;
+  raced.hypothesis.model = fits[*best].hypothesis.model;
   JudgeSet(windows, context.jobs, &raced);
   const GapFall fall = FallOf(set.near, raced.near);
   if (fall.logarithm >= kWorthRefining * -std::log1p(-kPartOfAnEffect))

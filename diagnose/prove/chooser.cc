@@ -114,10 +114,12 @@ bool Chooser::LeavesAGap(size_t place) const {
 void Chooser::Race(size_t from, const std::vector<Change>& blind) {
   if (!sets_.has_fitted()) return;
   for (const Change& change : blind) {
+    // Values that stand in for an effect lead its fit astray, as a J that carries the load behind a play.
+    const bool values = sets_[from].Effects().empty() && model::FindEffect(change.effect)->on_request;
     const std::vector<model::EffectDescription>& effects = sets_[from].hypothesis.model.effects;
     const bool there =
         std::ranges::any_of(effects, [&](const auto& effect) { return effect.id == change.effect; });
-    if (!there && !TimeIsUp(sets_.context())) sets_.Race(from, change);
+    if (!there && !TimeIsUp(sets_.context())) sets_.Race(values ? kGiven : from, change);
   }
 }
 

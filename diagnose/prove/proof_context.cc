@@ -24,6 +24,14 @@ double EvidenceOf(const std::vector<const RunData*>& runs) {
 
 }  // namespace
 
+std::vector<size_t> MovableValues(const ProofContext& context) {
+  std::vector<size_t> places;
+  for (const Change& change : context.changes) {
+    if (change.effect.empty()) places.push_back(model::BasePlace(change.parameter));
+  }
+  return places;
+}
+
 bool TimeIsUp(const ProofContext& context) { return context.time_is_up && context.time_is_up(); }
 
 double SearchHorizon(const std::vector<const RunData*>& runs) {

@@ -30,6 +30,9 @@ struct ProofContext {
   }
 };
 
+// The places of the base parameters that the diagnosis may change.
+std::vector<size_t> MovableValues(const ProofContext& context);
+
 // Whether the search has to end with what it has found.
 bool TimeIsUp(const ProofContext& context);
 

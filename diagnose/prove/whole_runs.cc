@@ -63,11 +63,12 @@ bool IsWorthTesting(const Change& change, const std::vector<std::string>& unlike
 std::vector<Tested> ScoreTest(const ProofContext& context, const Hypothesis& given,
                               const std::vector<model::StartState>& from,
                               const std::vector<std::string>& unlikely) {
+  const std::vector<size_t> movable = MovableValues(context);
   std::vector<Hypothesis> starts;
   std::vector<size_t> owner;
   for (size_t c = 0; c < context.changes.size(); ++c) {
     if (!IsWorthTesting(context.changes[c], unlikely)) continue;
-    for (Hypothesis& start : With(given, context.changes[c], context.sizes)) {
+    for (Hypothesis& start : With(given, context.changes[c], context.sizes, movable)) {
       starts.push_back(std::move(start));
       owner.push_back(c);
     }

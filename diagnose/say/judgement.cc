@@ -67,6 +67,9 @@ bool IsGapClosed(const Diagnosis& d, const Proof& proof, const RunsJudged& runs)
   // smallest error on, and an unstable motion multiplies it.
   const bool found = !proof.Found().changes.empty() || !proof.Found().Free().empty();
   const bool follows = std::isfinite(d.held_out.after + d.fit.after);
+  // A model that follows whole runs to the noise follows their windows too, from the right starts. But a
+  // window's start does not say what an effect remembers, as where in its play a load is.
+  if (follows && std::max(d.held_out.after, d.fit.after) <= kWholeRunsAtTheNoise * d.noise_shown) return true;
   const double left = std::max(kWholeRunsAtTheNoise, MayBeLeft(runs.longest / near->seconds * runs.growth));
   if (!found && follows && !whole(left)) return false;
   return OpenHorizon(d, *near, runs.exact_sensors) == nullptr;

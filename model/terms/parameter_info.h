@@ -23,6 +23,7 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 enum class Scale {
   kOne,           // the number itself
   kTorque,        // T_pmax
+  kInertia,       // J
   kSpeed,         // the largest motor speed in the runs
   kPressure,      // the largest pressure in the runs
   kCharge,        // p_3
@@ -105,6 +106,9 @@ struct ParameterInfo {
   // The base parameter to which this parameter is added as the same term. The gap finder frees one of the
   // two: the base parameter where that is not 0.
   double Parameters::*adds_to = nullptr;
+  // The base parameter in which a model without the effect may count this number too, as J does the inertia
+  // of a load behind a gear. The gap finder then starts from a half in each as well.
+  double Parameters::*part_of = nullptr;
   // The base parameter of whose two sides this number is the relative difference.
   double Parameters::*sides = nullptr;
   // A size at which the effect shows on the paper's rig (Table 1), or that a base parameter has there. Tests

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -113,6 +114,54 @@ TEST(BareMotor, AWeightAtAnyPhase) {
     EXPECT_NEAR(torque * std::cos(at), 6 * std::cos(phase), 0.6) << phase;
     EXPECT_NEAR(torque * std::sin(at), 6 * std::sin(phase), 0.6) << phase;
   }
+}
+
+// Runs under steps of voltage, up and down.
+std::vector<runs::MeasuredRun> SteppedRunsOf(const model::ModelDescription& truth) {
+  std::vector<runs::MeasuredRun> all;
+  for (int i = 0; i < 3; ++i) {
+    NoisyRig rig;
+    rig.model = truth;
+    rig.speed_noise = 0.05;
+    rig.seed = 60 + static_cast<uint64_t>(i);
+    const auto voltage = [&](double t) { return 0.25 * std::round(2 * std::sin((3 + i) * t)); };
+    runs::MeasuredRun run = std::move(
+        rig.Record("run " + std::to_string(i), model::Shaft::kClamped, 0, 3, true, voltage).measured);
+    run.p1.values.clear();
+    run.p2.values.clear();
+    all.push_back(std::move(run));
+  }
+  return all;
+}
+
+// Tests that play between the motor and its load is found by whoever asks for it, with all four numbers,
+// where the given J is the motor's alone and where it is that of both; and that such a machine, known, lacks
+// nothing.
+TEST(BareMotor, PlayThatIsAskedFor) {
+  constexpr double inertia = 0.004;
+  model::ModelDescription truth = Bare();
+  model::Parameters& servo = truth.parameters;  // a small one, whose speeds are below 50 rad/s
+  servo.k_1 = 1, servo.T_pmax = 3, servo.J = inertia, servo.b = 0.002, servo.T_s = 0.05;
+  truth.effects = {
+      {"gear.backlash", {{"width", 0.04}, {"stiffness", 150}, {"damping", 0.5}, {"inertia", inertia}}, {}}};
+  const std::vector<runs::MeasuredRun> runs = SteppedRunsOf(truth);
+  diagnose::DiagnoseOptions asked;
+  asked.effects = {"gear.backlash", "motor.cogging"};
+  for (const double counted : {1.0, 2.0}) {
+    model::ModelDescription given = truth;
+    given.effects.clear();
+    given.parameters.J = counted * inertia;
+    const diagnose::Diagnosis d = diagnose::Diagnose(given, runs, {}, asked, {});
+    ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
+    EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
+    const std::map<std::string, double>& found = d.model.effects.front().parameters;
+    EXPECT_NEAR(found.at("width"), 0.04, 0.004);
+    EXPECT_NEAR(found.at("stiffness"), 150, 50);
+    EXPECT_NEAR(found.at("damping"), 0.5, 0.15);
+    EXPECT_NEAR(found.at("inertia"), inertia, 0.1 * inertia);
+    EXPECT_NEAR(d.model.parameters.J, inertia, 0.1 * inertia);
+  }
+  EXPECT_EQ(diagnose::Diagnose(truth, runs, {}, {}, {}).verdict, diagnose::Verdict::kNothingMissing);
 }
 
 // Tests that friction that grows less than in proportion to the speed, as a greased gear has it, is named.

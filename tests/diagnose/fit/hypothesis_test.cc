@@ -104,7 +104,7 @@ TEST(Hypothesis, OptionalNumbers) {
             (Names{"gear.load_friction.motor_share", "gear.load_friction.load_share"}));
   const auto added = [&](const char* effect) {
     const Hypothesis plain = WithFree(Table1With({}), {});
-    return names(diagnose::With(plain, Change{effect, {}, ""}, diagnose::Sizes{.torque = 40}).front());
+    return names(diagnose::With(plain, Change{effect, {}, ""}, diagnose::Sizes{.torque = 40}, {}).front());
   };
   EXPECT_EQ(added("gear.load_friction"), (Names{"gear.load_friction.load_share"}));
   EXPECT_EQ(added("motor.back_emf"), (Names{"motor.back_emf.k_e", "motor.back_emf.tau"}));
@@ -144,7 +144,7 @@ TEST(Hypothesis, ChangesThereAndBack) {
   EXPECT_EQ(drag.Label(), "pump.quadratic_drag");
   EXPECT_EQ(skew.Label(), "sensor.skew (p1)");
   EXPECT_EQ(k_1.Label(), "parameter k_1");
-  const std::vector<Hypothesis> with = diagnose::With(plain, drag, sizes);
+  const std::vector<Hypothesis> with = diagnose::With(plain, drag, sizes, {});
   ASSERT_FALSE(with.empty());
   for (const Hypothesis& one : with) {
     EXPECT_TRUE(one.Has(drag));
@@ -152,7 +152,7 @@ TEST(Hypothesis, ChangesThereAndBack) {
     ASSERT_EQ(one.model.effects.size(), 1u);
     EXPECT_EQ(one.model.effects[0].id, "pump.quadratic_drag");
   }
-  Hypothesis both = diagnose::With(with[0], k_1, sizes).at(0);
+  Hypothesis both = diagnose::With(with[0], k_1, sizes, {}).at(0);
   both.model.parameters.k_1 = 9;
   const Hypothesis back = diagnose::Without(both, k_1, Table1With());
   EXPECT_EQ(back.model.parameters.k_1, Table1().k_1);

@@ -36,7 +36,9 @@ struct SmallProof {
     given.model = context.given;
     Add(given);
     for (size_t c = context.changes.size(); c-- > 0;) {
-      for (const diagnose::Hypothesis& start : With(given, context.changes[c], context.sizes)) Add(start);
+      for (const diagnose::Hypothesis& start :
+           With(given, context.changes[c], context.sizes, MovableValues(context)))
+        Add(start);
     }
     proof.best = proof.sets.size() - 1;
   }
