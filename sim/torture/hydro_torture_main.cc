@@ -23,7 +23,8 @@ namespace {
 
 // The request on the command line.
 struct TortureOptions {
-  int64_t seed = -1;  // -1: choose a new one
+  static constexpr int64_t kFreshSeed = std::numeric_limits<int64_t>::min();
+  int64_t seed = kFreshSeed;
   double seconds = 60;
   double hours = 0;                                    // used instead of seconds, if it is not 0
   int64_t runs = std::numeric_limits<int64_t>::max();  // as many as there is time for
@@ -135,6 +136,8 @@ int Run(const TortureOptions& options) {
   };
   if (!(options.seconds > 0 && options.seconds <= 1e8)) refuse("--seconds", options.seconds, "more than 0");
   if (!(options.hours >= 0 && options.hours <= 1e5)) refuse("--hours", options.hours, "more than 0");
+  const bool fresh = options.seed == TortureOptions::kFreshSeed;
+  if (!fresh && options.seed < 0) refuse("--seed", static_cast<double>(options.seed), "0 and more");
   if (options.runs < 1) refuse("--runs", static_cast<double>(options.runs), "1 and more");
   if (!options.config.empty()) ConfigFor(Schedule{}, options.config);  // an error here is no violation
   if (options.jobs < 1 || options.jobs > 256) {
@@ -142,8 +145,7 @@ int Run(const TortureOptions& options) {
   }
   if (!options.numbers.empty()) CheckCanBeCreated(options.numbers);
   CampaignOptions campaign;
-  campaign.first_seed =
-      options.seed >= 0 ? static_cast<uint64_t>(options.seed) : std::random_device()() % 1'000'000'000u;
+  campaign.first_seed = fresh ? std::random_device()() % 1'000'000'000u : static_cast<uint64_t>(options.seed);
   campaign.seconds = options.hours > 0 ? options.hours * 3600 : options.seconds;
   campaign.most_runs = options.runs;
   campaign.jobs = options.jobs;
