@@ -78,7 +78,7 @@ TEST_F(ProveTest, AValueThatNoBalanceShows) {
 // run is not fitted to it.
 TEST_F(ProveTest, HeldOutRunsMoveNoValue) {
   model::ModelDescription other = Table1With();
-  other.parameters.k_1 *= 1.2;
+  other.parameters.k_1 *= 1.25;  // a step of the race
   Record(Table1With());
   for (const int which : {1, 4}) runs_[which] = SmallRun(other, model::Shaft::kClamped, false, 2, which, 7);
   context_.changes = {{"", {}, "k_1"}};
