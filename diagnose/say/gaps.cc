@@ -106,20 +106,27 @@ struct SpreadWindows {
   }
 };
 
+// Whether the same models predict fitted and held-out runs: runs are held out in turn, and the set has one
+// model for all of them, or one for each with a value of its own.
+bool HasSameModels(const ProofContext& context, const ProvedSet& set) {
+  return context.held_out.empty() && (set.without.empty() || !set.by_run.empty());
+}
+
 // `fitted` has the gaps of the same windows by models that saw them, where runs are held out in turn;
 // otherwise null.
-GapsByModel GapsOver(const SpreadWindows& spread, const Proof& proof, bool held_out,
-                     const GapsByModel* fitted, int jobs) {
+GapsByModel GapsOver(const ProofContext& context, const SpreadWindows& spread, const Proof& proof,
+                     bool held_out, const GapsByModel* fitted) {
   GapsByModel gaps;
   for (size_t m = 0; m < kComparedModels; ++m) {
     const ProvedSet& set = *SetsOf(proof)[m];
-    if (fitted != nullptr && set.without.empty()) {
+    if (fitted != nullptr && HasSameModels(context, set)) {
       gaps[m] = (*fitted)[m];
       continue;
     }
+    const bool of_each = held_out || HasSameModels(context, set);
     gaps[m].resize(spread.windows.size());
-    ParallelFor(spread.windows.size(), jobs, [&](size_t w) {
-      gaps[m][w] = GapOf(held_out ? set.ModelOf(spread.runs[w]) : set.hypothesis.model, *spread.windows[w]);
+    ParallelFor(spread.windows.size(), context.jobs, [&](size_t w) {
+      gaps[m][w] = GapOf(of_each ? set.ModelOf(spread.runs[w]) : set.hypothesis.model, *spread.windows[w]);
     });
   }
   KeepCommon(&gaps);
@@ -145,15 +152,10 @@ WholeRuns OverWholeRuns(const ProofContext& context, const Proof& proof) {
   WholeRuns whole;
   for (size_t m = 0; m < kComparedModels; ++m) {
     const ProvedSet& set = *SetsOf(proof)[m];
-    // Where each run has a value of its own, there is no common model that fits.
-    const bool own = context.held_out.empty() && !set.by_run.empty();
+    const bool same = HasSameModels(context, set);
     whole.fitted[m] =
-        own ? OverRuns(context, set) : GapsOfEach(set.hypothesis.model, context.runs, context.jobs);
-    if (context.held_out.empty() && set.without.empty()) {
-      whole.held_out[m] = whole.fitted[m];
-      continue;
-    }
-    whole.held_out[m] = OverRuns(context, set);
+        same ? OverRuns(context, set) : GapsOfEach(set.hypothesis.model, context.runs, context.jobs);
+    whole.held_out[m] = same ? whole.fitted[m] : OverRuns(context, set);
   }
   return whole;
 }
@@ -171,9 +173,8 @@ std::vector<HorizonGap> HorizonGaps(const ProofContext& context, const Proof& pr
   for (const double seconds : kHorizons) {
     const SpreadWindows fitted(context.runs, seconds, context.given.parameters);
     const SpreadWindows held_out(context.predicted(), seconds, context.given.parameters);
-    const GapsByModel of_fitted = GapsOver(fitted, proof, false, nullptr, context.jobs);
-    const GapsByModel of_held_out =
-        GapsOver(held_out, proof, true, in_turn ? &of_fitted : nullptr, context.jobs);
+    const GapsByModel of_fitted = GapsOver(context, fitted, proof, false, nullptr);
+    const GapsByModel of_held_out = GapsOver(context, held_out, proof, true, in_turn ? &of_fitted : nullptr);
     HorizonGap horizon;
     horizon.seconds = seconds;
     horizon.fit = OfEach(of_fitted, GapOfTested);
