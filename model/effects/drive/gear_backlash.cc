@@ -123,7 +123,8 @@ class Backlash : public EffectOf<Backlash> {
                           .example = 0.005,
                           .optional = true,
                           .standard = {"J", [](const auto& p) { return p.J; }}}},
-          // The load's own angle is not measured.
+          // Starts: half a degree and three of play, in gears whose teeth the largest torque twists by as
+          // much (1/200 and 1/20 rad). The load's own angle is not measured.
           .unseen_by_balances = true,
           .on_request = true},
      .make = MakeEffect<Backlash>});
