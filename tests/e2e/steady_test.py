@@ -58,6 +58,17 @@ class SteadyTest(unittest.TestCase):
         self.assertEqual(self.steady("0.2", script).returncode, 0)
         self.assertEqual(self.count(), 2)
 
+    # Tests that a standstill of one processor is noticed, beside others that run: a process of real-time priority takes it.
+    def test_one_processor_standing_still_is_seen(self):
+        taken = min(os.sched_getaffinity(0))
+        burn = (f"import os, time; os.sched_setaffinity(0, {{{taken}}}); os.sched_setscheduler(0, os.SCHED_FIFO, "
+                "os.sched_param(50)); end = time.monotonic() + 0.3\nwhile time.monotonic() < end: pass")
+        if subprocess.run([sys.executable, "-c", burn], capture_output=True, check=False).returncode:
+            self.skipTest("no permission for real-time priority")
+        script = f'if [ "$run" = 1 ]; then {sys.executable} -c "{burn}"; exit 1; fi'
+        self.assertEqual(self.steady("0.2", script).returncode, 0)
+        self.assertEqual(self.count(), 2)
+
     # Tests that a test that was ended by a signal has failed, as in a shell.
     def test_signal(self):
         self.assertEqual(self.steady(NEVER, "kill -SEGV $$").returncode, 128 + 11)

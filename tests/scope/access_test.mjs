@@ -3,13 +3,13 @@ import assert from 'node:assert/strict';
 import { createServer } from 'node:http';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage, streaming, until } from './browser.mjs';
-import { Bench, kGentle, kToken } from './stack.mjs';
+import { Bench, kToken } from './stack.mjs';
 
 let bench, scope, browser, foreign;
 
 before(async () => {
   bench = await Bench.make();
-  await bench.launch(bench.file('run.lcmlog'), kGentle);
+  await bench.launch(bench.file('run.lcmlog'));
   scope = await bench.scope();
   browser = await openBrowser();
   foreign = createServer((request, response) =>

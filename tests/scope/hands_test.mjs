@@ -5,12 +5,11 @@ import { createRequire } from 'node:module';
 import { test } from 'node:test';
 import { openPage, streaming, until } from './browser.mjs';
 import { onALivePage } from './live_page.mjs';
-import { kGentle } from './stack.mjs';
 
 let scope, browser, page;
 
 // The checks of accessibility keep the machine busy for seconds.
-onALivePage((live) => ({ scope, browser, page } = live), { sets: kGentle });
+onALivePage((live) => ({ scope, browser, page } = live));
 
 // Tests that a phone scrolls only downwards, and that STOP is on the screen and a finger wide wherever one
 // has scrolled to.

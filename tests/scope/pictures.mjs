@@ -10,7 +10,8 @@ const folder = process.argv[2] ?? 'docs/pictures';
 const bench = await Bench.make();
 // Slower than real time, so that a busy machine makes no gaps.
 const kSlow = ['time.speed=0.25'];
-await bench.launch(bench.file('run.lcmlog'), kSlow);
+const kFar = ['reference.amplitude=0.2', 'limits.arm_torque=500'];
+await bench.launch(bench.file('run.lcmlog'), [...kSlow, ...kFar]);
 const scope = await bench.scope(undefined, { sets: [...kSlow, 'scope.control=true'] });
 const browser = await openBrowser();
 

@@ -14,6 +14,8 @@ before(async () => {
   const stack = await bench.launch(bench.file('run.lcmlog'), [
     explicit,
     'limits.motor_speed=150',
+    'limits.arm_torque=500',
+    'reference.amplitude=0.2',
     'limits.return_s=2', // slow enough that the limit is not passed again
     'reference.frequency_hz=0.02',
   ]);

@@ -16,9 +16,10 @@ export const kToken = 'f00df00df00df00df00df00df00df00d';
 // How long to wait for what should come soon. Nothing passes because of it, so it may be long: the machine is
 // shared.
 export const kPatience_ms = 90000;
-// Sets for launch(): a motion so gentle that a command held for a second, while a browser starts or axe counts, does not carry the arm
-// out of its cylinder.
-export const kGentle = ['reference.amplitude=0.05', 'limits.arm_torque=60'];
+// How far and how strongly the stack of launch() moves: so gently that a command held for a second, because a browser starts, axe
+// counts or the machine was given to others, does not carry the arm out of its cylinder.
+export const kAmplitude = 0.05; // rad
+const kTorque = 60; // in-lbf
 
 export function demoConfig() {
   return path.join(kConfig, 'demo.toml');
@@ -124,9 +125,10 @@ export class Bench {
   async launch(log, sets = []) {
     const moving = [
       'reference.kind=square',
-      'reference.amplitude=0.2',
+      `reference.amplitude=${kAmplitude}`,
       'reference.frequency_hz=0.5',
       'time.duration_s=0',
+      `limits.arm_torque=${kTorque}`,
       'limits.stale_input_s=1',
     ];
     const stack = this.#start('hydro-launch', [

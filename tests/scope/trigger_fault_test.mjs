@@ -27,7 +27,7 @@ const nextFault = async (known) =>
 // Tests that a trigger on faults waits through steps and edges until a limit is passed, has the fault at its moment,
 // with the motor beyond its limit just there and the voltage at zero from there on, and stands still.
 test('a fault', async () => {
-  const limit = 60; // rad/s; a step of the reference takes the motor beyond 150
+  const limit = 35; // rad/s; a step of the reference takes the motor beyond 70
   await page.evaluate(() => {
     hydroScope.trigger.change({ on: 'fault', mode: 'normal', span: 0.4 });
     hydroScope.trigger.start();

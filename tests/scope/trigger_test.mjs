@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { until } from './browser.mjs';
 import { onALivePage } from './live_page.mjs';
+import { kAmplitude } from './stack.mjs';
 
 let page;
 
@@ -21,11 +22,11 @@ test('the trigger stands still on a step of the reference', async () => {
   await page.keyboard.press('t');
   await until(page, () => hydroScope.trigger.captures >= 1 && hydroScope.display.mode === 'trigger');
   const step = () =>
-    page.evaluate(() => {
+    page.evaluate((half) => {
       const { t, bins } = hydroScope.display.capture;
       // Bins narrower than a tick are without a sample now and then.
       const seen = [...bins.min.arm_ref.keys()].filter((i) => !Number.isNaN(bins.min.arm_ref[i]));
-      const at = seen.find((i, k) => k > 0 && Math.abs(bins.min.arm_ref[i] - bins.min.arm_ref[seen[k - 1]]) > 0.3);
+      const at = seen.find((i, k) => k > 0 && Math.abs(bins.min.arm_ref[i] - bins.min.arm_ref[seen[k - 1]]) > half);
       return {
         t,
         offset: bins.t[at] - t,
@@ -33,7 +34,7 @@ test('the trigger stands still on a step of the reference', async () => {
         window: hydroScope.display.window,
         last: hydroScope.display.last,
       };
-    });
+    }, kAmplitude);
   const first = await step();
   assert.ok(Math.abs(first.offset) <= 0.006 + first.width, `the step is ${first.offset} s from the trigger`);
   await until(page, (last) => hydroScope.display.last > last + 0.1, first.last);
@@ -59,7 +60,7 @@ test('a falling level of the arm angle', async () => {
   await form('on').selectOption('level');
   await form('channel').selectOption('arm_angle');
   await form('edge').selectOption('falling');
-  await form('level').fill('0.05');
+  await form('level').fill('0.02');
   await form('level').press('Enter');
   await nextCapture();
   const { before: above, after: below } = await page.evaluate(() => {
@@ -71,7 +72,7 @@ test('a falling level of the arm angle', async () => {
       after: bins.min.arm_angle[seen.find((i) => bins.t[i] > t + bins.width)],
     };
   });
-  assert.ok(above > 0.05 && below < 0.05, `${above} before, ${below} after`);
+  assert.ok(above > 0.02 && below < 0.02, `${above} before, ${below} after`);
 });
 
 // Tests that the level's line can be dragged.
@@ -84,8 +85,8 @@ test('the level is dragged', async () => {
     const box = chart.plot.over.getBoundingClientRect();
     return {
       x: box.x + box.width * 0.7,
-      y: box.y + (chart.y(0.05) - chart.plot.bbox.top) / devicePixelRatio,
-      to: box.y + (chart.y(-0.1) - chart.plot.bbox.top) / devicePixelRatio,
+      y: box.y + (chart.y(0.02) - chart.plot.bbox.top) / devicePixelRatio,
+      to: box.y + (chart.y(-0.02) - chart.plot.bbox.top) / devicePixelRatio,
     };
   }, pane);
   await page.mouse.move(place.x, place.y);
@@ -94,7 +95,7 @@ test('the level is dragged', async () => {
   await page.mouse.move(place.x, place.to);
   await page.mouse.up();
   const level = await page.evaluate(() => hydroScope.trigger.settings.level);
-  assert.ok(Math.abs(level + 0.1) < 0.05, `the level is ${level}`);
+  assert.ok(Math.abs(level + 0.02) < 0.01, `the level is ${level}`);
 });
 
 // Tests that a single trigger catches once, says that it has stopped, and catches again when it is armed.
@@ -165,7 +166,7 @@ test('auto runs free, and stands still on what triggers', async () => {
     .getByText(/^free running/)
     .waitFor();
 
-  const caught = await causes({ level: 0.05 }, 3, 'triggered');
+  const caught = await causes({ level: 0.02 }, 3, 'triggered');
   assert.deepEqual(
     caught.map(({ state }) => state),
     ['triggered', 'triggered', 'triggered'],
