@@ -13,6 +13,7 @@
 
 #include "base/new_file.h"
 #include "base/number_text.h"
+#include "base/output_folder.h"
 #include "base/read_files.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
@@ -35,43 +36,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder of the report. If this run created it, the folder is removed again unless the report is in it.
-class ReportFolder {
- public:
-  explicit ReportFolder(std::string folder) : folder_(std::move(folder)) {
-    std::error_code error;
-    created_ = fs::create_directories(folder_, error);
-    if (error || !fs::is_directory(folder_) || access(folder_.c_str(), W_OK) != 0) {
-      throw InputError("--out: found " + Quoted(folder_) + ", a folder that cannot be written" +
-                       (error ? " (" + error.message() + ")" : "") +
-                       ", allowed a folder that can be written");
-    }
+// Writes all of the files. If one fails, the files of an earlier report stay.
+void WriteAll(const std::string& folder, const std::vector<std::pair<std::string, std::string>>& files) {
+  std::vector<std::unique_ptr<NewFile>> open;
+  for (const auto& [name, text] : files) {
+    open.push_back(std::make_unique<NewFile>(folder + "/" + name, Opening::kTemporary, Existing::kKept));
+    open.back()->Write(text.data(), text.size());
   }
-  ~ReportFolder() {
-    std::error_code error;
-    if (created_ && fs::is_empty(folder_, error) && !error) fs::remove(folder_, error);
-  }
-  ReportFolder(const ReportFolder&) = delete;
-  ReportFolder& operator=(const ReportFolder&) = delete;
-
-  // Writes all of the files. If one fails, the files of an earlier report stay.
-  void Write(const std::vector<std::pair<std::string, std::string>>& files) const {
-    std::vector<std::unique_ptr<NewFile>> open;
-    for (const auto& [name, text] : files) {
-      open.push_back(std::make_unique<NewFile>(folder_ + "/" + name, Opening::kTemporary, Existing::kKept));
-      open.back()->Write(text.data(), text.size());
-    }
-    for (const std::unique_ptr<NewFile>& file : open) file->Finish();
-  }
-  void Remove(const std::string& name) const {
-    std::error_code error;
-    fs::remove(folder_ + "/" + name, error);
-  }
-
- private:
-  std::string folder_;
-  bool created_ = false;
-};
+  for (const std::unique_ptr<NewFile>& file : open) file->Finish();
+}
 
 // Runs and the file of each, because a sidecar may split a table into several runs.
 struct ReadFiles {
@@ -388,7 +361,7 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   const DiagnoseOptions options = OptionsOf(request);
   RequireDifferentFiles(request);
   RequireFilesKept(request);
-  const ReportFolder folder(request.folder);
+  const OutputFolder folder(request.folder, "--out");
 
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [begin] {
@@ -408,8 +381,10 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   if (motor_alone) SpeakOfTheMotor(&diagnosis);
   Diagnosis shown = diagnosis;
   if (motor_alone) ShowTheMotorAlone(&shown);
-  folder.Write(ReportFiles(diagnosis, shown, given, request.si, elapsed));
-  if (diagnosis.next.config.empty()) folder.Remove("next.toml");  // from an earlier report
+  WriteAll(request.folder, ReportFiles(diagnosis, shown, given, request.si, elapsed));
+  std::error_code error;
+  if (diagnosis.next.config.empty())
+    fs::remove(request.folder + "/next.toml", error);  // of an earlier report
   std::fputs(TerminalSummary(shown, request.folder, request.si).c_str(), out);
 }
 

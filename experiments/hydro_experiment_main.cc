@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
                "sensors as noisy as the paper's plots, in pictures of their own (fig4, fig5)");
   line.AddFlag("--real-time", &request.real_time, "run the stack as separate processes on the wall clock");
   line.AddOption("--jobs", &request.jobs, "N processors to use (all of them)");
-  line.AddFlag("--si", &request.si, "print figures in SI units");
+  line.AddFlag("--si", &request.si, "print the tables in SI units; the text keeps those of the paper");
   line.AddFlag("--list", &list, "print the names and end");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-experiment", [&] { return list ? List() : Run(request); });

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <filesystem>
 #include <numeric>
 #include <thread>
 
 #include "base/input_error.h"
 #include "base/new_file.h"
+#include "base/output_folder.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
@@ -20,19 +20,6 @@
 
 namespace hydro::experiments {
 namespace {
-
-void CreateFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error && !std::filesystem::is_directory(folder))
-    error = std::make_error_code(std::errc::not_a_directory);
-  if (!error && access(folder.c_str(), W_OK | X_OK) != 0)
-    error = std::error_code(errno, std::generic_category());
-  if (error) {
-    throw InputError("--out: the folder '" + folder + "' cannot be used: " + error.message() +
-                     "; name a folder that can be created and written to");
-  }
-}
 
 // The share of an experiment that is done once only its pictures remain to be drawn.
 constexpr double kRunShare = 0.9;
@@ -170,7 +157,7 @@ std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
 int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& request, std::FILE* out,
                    std::FILE* errors) {
   const std::vector<Experiment> chosen = ChooseExperiments(all, request);
-  CreateFolder(request.folder);
+  const OutputFolder folder(request.folder, "--out");
   for (const char* ending : {".json", ".csv", ".svg"}) {
     CheckKeeps(request.folder + "/" + request.name + ending, {request.options.measured_run});
     for (const Experiment& experiment : chosen) CheckIsNew(request.folder + "/" + experiment.name + ending);

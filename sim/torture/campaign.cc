@@ -9,11 +9,10 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
 #include <new>
 
-#include "base/input_error.h"
 #include "base/new_file.h"
+#include "base/output_folder.h"
 #include "process/stop_signal.h"
 
 namespace hydro::torture {
@@ -90,9 +89,7 @@ Finding Crash(const CampaignOptions& options, const WorkerState& state, int stat
 }  // namespace
 
 CampaignResult RunCampaign(const CampaignOptions& options) {
-  std::error_code error;
-  const bool made = std::filesystem::create_directories(options.out, error);
-  if (error) throw InputError(options.out + ": cannot be made: " + error.message());
+  const OutputFolder folder(options.out, "--out");  // it stays where it has a schedule
   const auto start = Clock::now();
   WorkerState* const states = SharedStates(options.jobs);
   std::vector<Child> children;
@@ -118,7 +115,6 @@ CampaignResult RunCampaign(const CampaignOptions& options) {
   result.cpu_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
                  1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
   munmap(states, sizeof(WorkerState) * static_cast<size_t>(options.jobs));
-  if (made) std::filesystem::remove(options.out, error);  // it stays where it has a schedule
   result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   return result;
 }

@@ -167,7 +167,7 @@ class BadInputTest(stack.TestCase):
             self.assert_refused("hydro-launch", [word, stack.config("demo.toml")], f'found "{word}", did you mean "{verb}"?')
         self.assert_refused("hydro-launch", ["--stopp", stack.config("demo.toml")], 'found the unexpected argument "--stopp".*did you mean "--stop"')
         table = self.write("run.csv", b"time_s,arm_angle_rad,arm_ref_rad,p1_psi,p2_psi,pressure_ref_psi,motor_speed_rad_s,voltage_V\n0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0\n")
-        self.assert_refused("hydro-plot", [table, table + "/pictures"], "run.csv/pictures: cannot be made: Not a directory")
+        self.assert_refused("hydro-plot", [table, table + "/pictures"], r'DIR: found ".*run\.csv/pictures", a folder that cannot be written \(Not a directory\)')
         self.assert_refused("hydro-torture", ["--runs", "0"], "--runs: found 0, allowed 1 and more")
         self.assert_refused("hydro-torture", ["--seed", "-1", "--runs", "1"], "--seed: found -1, allowed 0 and more")
         self.run_program("hydro-torture", "--runs", "1", "--seed", "1", "--out", self.path("torture"))

@@ -1,10 +1,8 @@
 // hydro-plot RUN.csv DIR: draws pictures of a run.
-#include <filesystem>
 #include <string>
-#include <system_error>
 
-#include "base/input_error.h"
 #include "base/new_file.h"
+#include "base/output_folder.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "page/figure_svg.h"
@@ -28,9 +26,7 @@ int main(int argc, char** argv) {
     const hydro::tables::Table run = hydro::tables::ReadTableWithoutUnits(table);
     const std::string arm = hydro::page::FigureFile(hydro::plot::ArmFigure(run), "arm");
     const std::string pressure = hydro::page::FigureFile(hydro::plot::PressureFigure(run), "pressure");
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed) throw hydro::InputError(folder + ": cannot be made: " + failed.message());
+    const hydro::OutputFolder made(folder, "DIR");
     hydro::WriteWholeFile(folder + "/arm.svg", arm, hydro::Existing::kKept);
     hydro::WriteWholeFile(folder + "/pressure.svg", pressure, hydro::Existing::kKept);
     return 0;

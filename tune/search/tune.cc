@@ -1,15 +1,14 @@
 #include "tune/search/tune.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "base/new_file.h"
 #include "base/number_text.h"
+#include "base/output_folder.h"
 #include "base/read_files.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
@@ -87,30 +86,7 @@ Proposal ProposalOf(const StepJudge& judge, std::string name, Tried tried) {
   return proposal;
 }
 
-// Known before the search, which takes a while; leaves no folder behind.
-void CheckFolder(const std::string& folder) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  fs::path last = folder, first;  // the first that is not there yet
-  while (!last.empty() && !fs::exists(last, error) && !error) {
-    first = last;
-    last = last.parent_path();
-  }
-  error.clear();
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0) {
-    throw InputError("--out: found " + Quoted(folder) + ", a folder that cannot be written" +
-                     (error ? " (" + error.message() + ")" : "") + ", allowed a folder that can be written");
-  }
-  for (const char* file : {"/tune.svg", "/tune.html"}) CheckIsNew(folder + file);
-  for (fs::path made = folder; !first.empty(); made = made.parent_path()) {
-    fs::remove(made, error);
-    if (made == first) break;
-  }
-}
-
 void WriteReport(const TuningReport& report, const std::string& folder, bool si) {
-  std::filesystem::create_directories(folder);
   WriteWholeFile(folder + "/tune.svg", ReportPicture(report), Existing::kKept);
   WriteWholeFile(folder + "/tune.html", ReportPage(report, si), Existing::kKept);
 }
@@ -176,7 +152,11 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   const Goals goals = ParseGoals(request.goals, config.model.description.units.UnitFor("rad", 1));
   CheckKeeps(request.output);
   CheckCanBeWritten(request.output);
-  if (!request.folder.empty()) CheckFolder(request.folder);
+  std::optional<OutputFolder> folder;  // known to be good before the search, which takes a while
+  if (!request.folder.empty()) {
+    folder.emplace(request.folder, "--out");
+    for (const char* file : {"/tune.svg", "/tune.html"}) CheckIsNew(request.folder + file);
+  }
   if (!request.output.empty()) CheckCanBeChanged(request, config);
   const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
   Refuse(config, RefusalByTheMotor(judge, goals));
