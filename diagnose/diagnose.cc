@@ -242,6 +242,41 @@ class TimeLimit {
   std::atomic<bool> struck_ = false;
 };
 
+// The weight of a set with this change alone.
+double WeightOf(const ExplanationWeights& weights, const std::string& change) {
+  for (const WeighedExplanation& one : weights.explanations) {
+    if (one.changes == ChangeSet{change}) return one.weight;
+  }
+  return 0;
+}
+
+// Proves what the balances propose. Fitted runs of which only one shows a value (a payload) cannot propose
+// that it differs by run. So where a gap is left, and values of runs predict windows that did not see them
+// better, they are proposed too. They are said where they close the gap: in part, any value of a run's own
+// would.
+Diagnosis ProveAndConclude(const ProofContext& context, const Hypothesis& as_given,
+                           const std::vector<size_t>& allowed, const DiagnoseOptions& options,
+                           Proposed* proposed) {
+  // Whoever names the values that may differ asks for them, and windows may show what balances do not.
+  const bool asked = !options.free.empty() || proposed->proposals.empty();
+  const auto prove = [&] {
+    const Proof proof = ProveProposals(context, as_given, asked ? allowed : proposed->shown,
+                                       proposed->proposals, BlindChanges(context), proposed->said);
+    return Conclude(context, proof, *proposed);
+  };
+  Diagnosis diagnosis = prove();
+  if (diagnosis.verdict == Verdict::kNothingMissing && options.per_run.empty()) return diagnosis;
+  diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
+  if (!IsOpen(diagnosis.verdict) || !options.per_run.empty() || diagnosis.per_run.empty()) return diagnosis;
+  const ValueByRun& own = diagnosis.per_run.front();
+  const double weight = WeightOf(proposed->weights, "run." + own.name);
+  proposed->proposals.insert(proposed->proposals.begin(), WithOwnValues(context, allowed, own.name, weight));
+  Diagnosis again = prove();
+  if (again.by_run.empty() || again.verdict != Verdict::kParameters) return diagnosis;
+  again.per_run = ValuesByRun(context, again.model, options.per_run, allowed);
+  return again;
+}
+
 }  // namespace
 
 Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
@@ -265,22 +300,20 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   as_given.highest_speed = context.sizes.speed;
   as_given.longest_time = NearHorizon(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
-  const Proposed proposed = Propose(context, allowed, checked.inverted);
-  // Whoever names the values that may differ asks for them, and windows may show what balances do not.
-  const bool asked = !options.free.empty() || proposed.proposals.empty();
-  const Proof proof = ProveProposals(context, as_given, asked ? allowed : proposed.shown, proposed.proposals,
-                                     BlindChanges(context), proposed.said);
-  Diagnosis diagnosis = Conclude(context, proof, proposed);
+  Proposed proposed = Propose(context, allowed, checked.inverted);
+  Diagnosis diagnosis = ProveAndConclude(context, as_given, allowed, options, &proposed);
   diagnosis.unjudged = proposed.unjudged;
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
-  if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
-    diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
-    for (const ValueByRun& value : diagnosis.per_run) diagnosis.remarks.push_back(RemarkOn(value));
-    const bool matters = IsOpen(diagnosis.verdict) || !diagnosis.by_run.empty();
-    if (matters && options.per_run.empty() && !diagnosis.per_run.empty())
-      diagnosis.sentence += " " + RemarkOn(diagnosis.per_run.front()) + ".";
+  for (const ValueByRun& value : diagnosis.per_run) diagnosis.remarks.push_back(RemarkOn(value));
+  const bool matters = IsOpen(diagnosis.verdict) || !diagnosis.by_run.empty();
+  if (matters && options.per_run.empty() && !diagnosis.per_run.empty())
+    diagnosis.sentence += " " + RemarkOn(diagnosis.per_run.front()) + ".";
+  // What says where to go on stands before what qualifies the answer.
+  std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);
+  if (IsOpen(diagnosis.verdict) && options.effects.empty()) {
+    const std::string requests = RemarkOnRequests(model, context.changes, context.runs);
+    if (!requests.empty()) remarks.push_back(requests);
   }
-  const std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
   std::vector<const RunData*> all = context.runs;
   all.insert(all.end(), context.held_out.begin(), context.held_out.end());
@@ -288,13 +321,9 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   diagnosis.remarks.insert(diagnosis.remarks.end(), layouts.begin(), layouts.end());
   const std::vector<std::string> limits = LimitRemarks(model.parameters, context.runs);
   diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
-  if (IsOpen(diagnosis.verdict) && options.effects.empty()) {
-    const std::string requests = RemarkOnRequests(model, context.changes, context.runs);
-    if (!requests.empty()) diagnosis.remarks.push_back(requests);
-  }
   AddChecked(checked, &diagnosis);
   if (!diagnosis.by_run.empty()) diagnosis.remarks.push_back(RemarkOnOwnValues(diagnosis.by_run));
-  if (!diagnosis.choices.empty()) diagnosis.remarks.push_back(ChoiceRemark(diagnosis.choices));
+  if (!diagnosis.choices.empty()) diagnosis.remarks.push_back(ChoiceRemark(diagnosis));
   if (limit.struck()) diagnosis.sentence = limit.Remark() + diagnosis.sentence;
   diagnosis.recording = std::move(prepared.clocks);
   return diagnosis;

@@ -207,15 +207,19 @@ void AddLoads(ColumnMaker* maker) {
       series[i] = -std::sin(motion.at[static_cast<size_t>(i) * motion.stride].arm_angle);
     maker->Put(off, run, BalanceKind::kArm, std::move(series));
   });
-  const std::optional<int> load = maker->Named("mgl");
-  if (!load) return;
-  const double unit = maker->given().mgl != 0 ? std::abs(maker->given().mgl) : 1;
-  for (size_t r = 0; r < maker->runs->size(); ++r) {
-    if (!CanForm(maker->Motion(r), BalanceKind::kArm)) continue;
-    ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*load)];
-    meaning.run = static_cast<int>(r);
-    meaning.unit = 1;
-    maker->AddAlias({OfRun("mgl", r), "", kLoad * torque / unit, false}, meaning, *load, static_cast<int>(r));
+  // A payload has weight and inertia.
+  const double weight = maker->given().mgl != 0 ? std::abs(maker->given().mgl) : 1;
+  const std::pair<const char*, double> parts[] = {{"mgl", kLoad * torque / weight}, {"J_a", kLoad}};
+  for (const auto& [name, sd] : parts) {
+    const std::optional<int> load = maker->Named(name);
+    if (!load) continue;
+    for (size_t r = 0; r < maker->runs->size(); ++r) {
+      if (!CanForm(maker->Motion(r), BalanceKind::kArm)) continue;
+      ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*load)];
+      meaning.run = static_cast<int>(r);
+      meaning.unit = 1;
+      maker->AddAlias({OfRun(name, r), "", sd, false}, meaning, *load, static_cast<int>(r));
+    }
   }
 }
 

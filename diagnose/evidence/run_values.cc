@@ -65,7 +65,7 @@ std::vector<size_t> ValuesOfADay(const std::vector<size_t>& allowed) {
   std::vector<size_t> places;
   for (const size_t place : allowed) {
     for (double Parameters::*member :
-         {&Parameters::T_s, &Parameters::b, &Parameters::mgl, &Parameters::p_3}) {
+         {&Parameters::T_s, &Parameters::b, &Parameters::mgl, &Parameters::J_a, &Parameters::p_3}) {
       if (model::BaseParameters()[place].member == member) places.push_back(place);
     }
   }

@@ -376,4 +376,15 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   return proposed;
 }
 
+Proposal WithOwnValues(const ProofContext& context, const std::vector<size_t>& allowed,
+                       const std::string& parameter, double weight) {
+  Proposal proposal;
+  proposal.model = context.given;
+  proposal.base = {model::BasePlace(parameter)};
+  proposal.weight = weight;
+  proposal.by_run = {parameter};
+  proposal.without = ModelsOfRuns(context, allowed, context.given, proposal.by_run);
+  return proposal;
+}
+
 }  // namespace hydro::diagnose

@@ -36,4 +36,9 @@ struct Proposed {
 Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed,
                  const std::vector<std::string>& inverted = {});
 
+// The model as given, with each predicted run's own value of a base parameter that may differ from day to day
+// (ValuesOfADay()), as the run's balances show it. `weight`: of such a set among all that were proposed.
+Proposal WithOwnValues(const ProofContext& context, const std::vector<size_t>& allowed,
+                       const std::string& parameter, double weight);
+
 }  // namespace hydro::diagnose

@@ -248,6 +248,9 @@ struct Diagnosis {
   // When held_out_runs is empty, the runs were held out in turn.
   std::vector<std::string> runs, held_out_runs;
   std::vector<ChoiceWithout> choices;  // filled if they were, and there are at least three
+  // Whether runs were held out in turn, and every second window of each was fitted all the same: then
+  // held-out gaps of whole runs are those of a model that saw half of each.
+  bool half_fitted = false;
   size_t samples = 0;
 };
 

@@ -114,8 +114,12 @@ bool IsWhatWasFound(const WeightedSet& explanation, const Diagnosis& diagnosis) 
   return terms == found;
 }
 
-// What the weights say together.
-std::string WeightsInWords(size_t set_90, bool first_was_found) {
+// What the weights say together. `open`: whether a significant gap is left, so that all of them may be wrong.
+std::string WeightsInWords(size_t set_90, bool first_was_found, bool open) {
+  if (open)
+    return "A significant gap is left, so the truth may be none of these. Of what was tried, " +
+           std::string(set_90 <= 1 ? "the first is" : "those that are marked are") +
+           " the likeliest, nine times in ten.";
   std::string words = "By what the balances say and what held-out simulation makes of it, the truth is ";
   if (set_90 <= 1) {
     words += "the first of these nine times in ten: these runs tell it from all others.";
@@ -143,7 +147,13 @@ std::string WhatWasFound(const Diagnosis& diagnosis, bool si) {
   if (!diagnosis.by_run.empty())
     out += "<p>" + page::TypesetHtml(Enumerated(diagnosis.by_run)) +
            ", with a value of its own for each run (see what differs from run to run).</p>\n";
-  return out.empty() ? "<p>Nothing was added to the model, and none of its values was changed.</p>\n" : out;
+  if (!out.empty()) return out;
+  if (!diagnosis.unsure.empty())
+    return "<p>No effect was added to the model. Other values of " +
+           page::TypesetHtml(Enumerated(diagnosis.unsure)) +
+           " stand in model.toml, which these runs do not show to differ from those given (see the "
+           "remarks).</p>\n";
+  return "<p>Nothing was added to the model, and none of its values was changed.</p>\n";
 }
 
 std::string HowSure(const Diagnosis& diagnosis) {
@@ -178,7 +188,7 @@ std::string WhatMayExplain(const Diagnosis& diagnosis) {
             "</tr>\n";
   }
   if (rows.empty()) return "";
-  return "<p>" + WeightsInWords(diagnosis.set_90, first_was_found) + "</p>\n" +
+  return "<p>" + WeightsInWords(diagnosis.set_90, first_was_found, IsOpen(diagnosis.verdict)) + "</p>\n" +
          Table({"explanation", "#weight", "one of these, nine times in ten", ""}, rows, "narrow") +
          "<p>Each weight is the mean of two: what the balances say before anything is simulated, and what "
          "the simulation of "
@@ -206,7 +216,7 @@ std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
   rows += "<tr class=\"all\"><td class=\"number\">whole runs</td>" + GapCells(diagnosis.held_out) +
           GapCells(diagnosis.fit) + "</tr>\n";
   const std::string choices =
-      diagnosis.choices.empty() ? "" : "<p>" + page::TypesetHtml(ChoiceRemark(diagnosis.choices)) + ".</p>\n";
+      diagnosis.choices.empty() ? "" : "<p>" + page::TypesetHtml(ChoiceRemark(diagnosis)) + ".</p>\n";
   return "<p>Root-mean-square differences between predictions and measurements, in standard deviations of "
          "the noise: 1 is the noise floor. Each prediction reaches that far from a start of its own. "
          "<i>Before</i>: "

@@ -46,7 +46,7 @@ std::pair<std::string, std::string> FirstSentence(const std::string& sentence) {
     end = sentence.find(". ", end + 2);
   std::string first = sentence.substr(0, end == std::string::npos ? end : end + 1);
   const std::string rest = end == std::string::npos ? "" : sentence.substr(end + 2);
-  for (const char* gap : {" (held-out gap ", " (the held-out gap "}) {
+  for (const char* gap : {" (held-out gap ", " (the held-out gap ", " (gap ", " (the gap "}) {
     const size_t at = first.find(gap);
     if (at != std::string::npos && first.ends_with(").")) first = first.substr(0, at) + ".";
   }
@@ -58,8 +58,10 @@ std::string GapInWords(const Diagnosis& diagnosis) {
   const ComparedGap& compared = diagnosis.compared;
   const BeforeAfter& gap = compared.gap;
   if (!std::isfinite(gap.before) || !std::isfinite(gap.after) || gap.before == 0) return "";
-  return (compared.of_fitted ? "On the runs that it was fitted to" : "On runs that it was not fitted to") +
-         (compared.seconds > 0 ? ", predicted over " + ShortNumber(compared.seconds, 2) + " s," : "") +
+  const std::string on = compared.of_fitted      ? "On the runs that it was fitted to"
+                         : diagnosis.half_fitted ? "On runs of which it was fitted to half"
+                                                 : "On runs that it was not fitted to";
+  return on + (compared.seconds > 0 ? ", predicted over " + ShortNumber(compared.seconds, 2) + " s," : "") +
          " the model as given is off by " + ShortNumber(gap.before, 3) + " times the noise of the sensors" +
          (diagnosis.verdict == Verdict::kNothingMissing
               ? ""
@@ -71,7 +73,8 @@ std::string Head(const Diagnosis& diagnosis) {
   std::string meta = Plural(diagnosis.runs.size(), "run") + " (" + Joined(diagnosis.runs) + "), " +
                      std::to_string(diagnosis.samples) + " samples; ";
   meta += diagnosis.held_out_runs.empty()
-              ? "each held out in turn."
+              ? (diagnosis.half_fitted ? "half of each fitted, and the other half held out."
+                                       : "each held out in turn.")
               : "held out, and not fitted: " + Joined(diagnosis.held_out_runs) + ".";
   std::string verdict = VerdictName(diagnosis.verdict);
   const bool open = IsOpen(diagnosis.verdict);
@@ -112,7 +115,7 @@ std::string Runs(const Diagnosis& diagnosis, bool si) {
     const std::optional<page::Figure> figure = RunFigure(diagnosis, run, si);
     if (!figure) continue;
     out += "<h3>" + page::EscapeMarkup(run.run) +
-           (run.held_out
+           (run.held_out && !diagnosis.half_fitted
                 ? " <span class=\"meta\">held out: <i>after</i> is a model that was not fitted to it</span>"
                 : "") +
            "</h3>\n" + page::HtmlFigure(*figure, "measured and simulated signals of " + run.run);
@@ -164,7 +167,7 @@ std::string Remarks(const Diagnosis& diagnosis) {
   for (const Unjudged& one : diagnosis.unjudged)
     items += "<li>" + page::TypesetHtml(UnjudgedText(one)) + ".</li>\n";
   // The choice of the runs is described beside the gaps.
-  const std::string choice = diagnosis.choices.empty() ? "" : ChoiceRemark(diagnosis.choices);
+  const std::string choice = diagnosis.choices.empty() ? "" : ChoiceRemark(diagnosis);
   for (const std::string& remark : diagnosis.remarks) {
     if (remark != choice) items += "<li>" + page::TypesetHtml(remark) + "</li>\n";
   }

@@ -191,7 +191,8 @@ std::string TerminalSummary(const Diagnosis& given, const std::string& folder, b
                          (parameter.implausible ? " (implausible)" : ""));
   }
   if (!parameters.empty()) out += "parameters: " + Joined(parameters, "; ") + "\n";
-  out += GapLine("held out:   ", diagnosis.held_out);
+  out +=
+      GapLine(diagnosis.half_fitted ? "held out:   half of each run: " : "held out:   ", diagnosis.held_out);
   out += GapLine("fitted:     ", diagnosis.fit);
   out += HorizonLine(diagnosis);
   out += SignalsLine(diagnosis, si);

@@ -116,7 +116,8 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
     d.explanations.push_back({one.changes, one.weight});
   d.set_90 = proposed.weights.in_90;
   d.model = proof.Found().model;
-  d.by_run = proof.sets[proof.best].by_run;
+  d.by_run = proof.Best().by_run;
+  d.half_fitted = context.held_out.empty() && proof.Best().without.empty() && !proof.Found().Free().empty();
   const std::vector<model::ModelDescription> tied = DescribeFound(context, proof, &d);
   const WholeRuns whole = OverWholeRuns(context, proof);
   DescribeGaps(context, whole, &d);

@@ -111,17 +111,18 @@ std::string OverWholeRuns(const Diagnosis& d, const ComparedGap& compared) {
 
 std::string GapOf(const Diagnosis& d, const ComparedGap& compared) {
   const BeforeAfter& gap = compared.gap;
-  const std::string over = OverWhat(d, compared), which = compared.of_fitted ? "fitted" : "held-out";
+  const std::string over = OverWhat(d, compared);
+  const std::string which = compared.of_fitted ? "fitted " : d.half_fitted ? "" : "held-out ";
   const std::string before = ShortNumber(gap.before, 3), after = ShortNumber(gap.after, 3);
   if (!std::isfinite(gap.after)) {
     return " (" + std::string(std::isfinite(gap.before) ? "with it the model" : "the model") +
-           " cannot follow the " + which + " runs" + over + ").";
+           " cannot follow the " + which + "runs" + over + ").";
   }
   if (!std::isfinite(gap.before)) {
-    return " (the model as given cannot follow the " + which + " runs" + over + "; " + after +
+    return " (the model as given cannot follow the " + which + "runs" + over + "; " + after +
            " noise units are left" + OfTheSamples(d) + ").";
   }
-  const std::string of = which + " gap" + over;
+  const std::string of = which + "gap" + over;
   if (before == after) return " (the " + of + " stays at " + before + " noise units" + OfTheSamples(d) + ").";
   if (gap.after > gap.before)
     return " (the " + of + " rises from " + before + " to " + after + " noise units" + OfTheSamples(d) + ").";
@@ -224,15 +225,19 @@ std::string WhyNext(const std::vector<FoundEffect>& effects) {
   return "";
 }
 
-std::string ChoiceRemark(const std::vector<ChoiceWithout>& choices) {
+std::string ChoiceRemark(const Diagnosis& d) {
   std::map<std::string, std::vector<std::string>> others;  // runs by what the others choose without them
   std::vector<std::string> runs;
-  for (const ChoiceWithout& choice : choices) {
+  for (const ChoiceWithout& choice : d.choices) {
     if (choice.same) continue;
     others[choice.chosen].push_back(choice.run);
     runs.push_back(choice.run);
   }
-  const std::string begin = "Each run was predicted from the others, with values that were not fitted to it";
+  const std::string begin =
+      d.half_fitted
+          ? "Every second window of each run was fitted, and the others chose between models, so that "
+            "held-out gaps are those of a model that saw half of each run"
+          : "Each run was predicted from the others, with values that were not fitted to it";
   if (others.empty()) {
     return begin + "; among what was tried, the others choose the same without it";
   }

@@ -23,6 +23,6 @@ std::vector<std::string> InWords(const std::vector<std::string>& rivals);
 std::string WhyNext(const std::vector<FoundEffect>& effects);
 
 // Says how well the choices made without each run predict that run from the others.
-std::string ChoiceRemark(const std::vector<ChoiceWithout>& choices);
+std::string ChoiceRemark(const Diagnosis& d);
 
 }  // namespace hydro::diagnose

@@ -58,8 +58,8 @@ TEST_F(OutputFolderTest, SaysWhatCannotBe) {
       const OutputFolder folder(name, "DIR");
       ADD_FAILURE() << name;
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("DIR: found \"" + name + "\", a folder that cannot be written (" +
-                                          reason + ")"));
+      EXPECT_THAT(error.what(),
+                  HasSubstr("DIR: found \"" + name + "\", a folder that cannot be written (" + reason + ")"));
     }
   }
 }

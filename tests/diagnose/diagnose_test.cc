@@ -80,6 +80,31 @@ TEST(Diagnose, NamesAHiddenEffect) {
   EXPECT_EQ(d.curves.size(), 4);
 }
 
+// Tests that an arm that is heavier in the held-out run than in the only fitted one that moves it is said as
+// such: the fitted runs cannot show that its inertia differs by run.
+TEST(Diagnose, AnotherPayload) {
+  const auto free = [](double inertia, int which) {
+    model::ModelDescription rig = Table1With();
+    rig.parameters.J_a *= inertia;
+    return SmallRun(rig, model::Shaft::kFree, false, 2.5, which, 8);
+  };
+  std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 2.5, 8), held_out;
+  runs.push_back(free(0.8, 2));
+  held_out.push_back(free(1.3, 3));
+  diagnose::DiagnoseOptions options = Few();
+  options.free.clear();
+  const diagnose::Diagnosis d =
+      diagnose::Diagnose(Table1With(), Measured(std::move(runs)), Measured(std::move(held_out)), options, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kParameters) << d.sentence;
+  EXPECT_THAT(d.by_run, ElementsAre("J_a"));
+  EXPECT_GT(d.held_out.before, 10);
+  EXPECT_LT(d.held_out.after, 1.5);
+  ASSERT_EQ(d.per_run.size(), 1u);
+  ASSERT_EQ(d.per_run[0].values.size(), 4u);
+  EXPECT_NEAR(d.per_run[0].values[2].value / Table1().J_a, 0.8, 0.03);
+  EXPECT_NEAR(d.per_run[0].values[3].value / Table1().J_a, 1.3, 0.03);
+}
+
 // Tests that the model it writes needs nothing more.
 TEST(Diagnose, ItsOwnModelNeedsNothing) {
   const diagnose::Diagnosis d = diagnose::Diagnose(OfTheDrag().model, RunsOf(Dragged()), {}, {}, {});

@@ -167,8 +167,9 @@ ReplayVerb::ReplayVerb(settings::CommandLine& line) {
 int ReplayVerb::Run() const {
   const bool ours = controller_ == "pressure" || controller_ == "position" || controller_ == "both";
   if (ours && !role_.empty()) {
-    throw InputError("--role: found it beside --controller " + controller_ +
-                     ", allowed with a command of your own");
+    throw InputError(
+        "--role: found it with our own controllers, allowed with --controller COMMAND, a program of your "
+        "own");
   }
   if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
   if (!(timeout_s_ > 0 && timeout_s_ <= kLongest_s)) {

@@ -19,11 +19,11 @@ int main(int argc, char** argv) {
   line.AddForce();
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-plot", [&] {
+    const hydro::tables::Table run = hydro::tables::ReadTableWithoutUnits(table);
     for (const char* picture : {"/arm.svg", "/pressure.svg"}) {
       hydro::CheckKeeps(folder + picture, {table});
       hydro::CheckIsNew(folder + picture);
     }
-    const hydro::tables::Table run = hydro::tables::ReadTableWithoutUnits(table);
     const std::string arm = hydro::page::FigureFile(hydro::plot::ArmFigure(run), "arm");
     const std::string pressure = hydro::page::FigureFile(hydro::plot::PressureFigure(run), "pressure");
     const hydro::OutputFolder made(folder, "DIR");

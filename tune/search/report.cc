@@ -71,10 +71,10 @@ std::string MarginsText(const Proposal& proposal) {
 
 std::string RatioText(double ratio) {
   if (ratio >= kStopped) return "stops";  // a limit ended the run
-  return ratio >= kNeverSettled ? "never" : fmt::format("{:.2f}", ratio);
+  return ratio >= kNeverSettled ? ">" + NumberText(kNeverSettled) : fmt::format("{:.2f}", ratio);
 }
 
-// Below a table with "never" or "stops": a line for each limit that is behind them.
+// Below a table with ">2.5" or "stops": a line for each limit that is behind them.
 std::string UnsettledText(const TuningReport& report) {
   const std::string unit = report.judge->config().model.description.units.UnitFor("rad", 1);
   std::string text;
@@ -108,11 +108,12 @@ std::string StepsText(const TuningReport& report) {
   }
   text += "\n";
   for (size_t i = 0; i < report.judge->steps().size(); ++i) {
-    const double step = report.judge->steps()[i];
-    text += fmt::format("  {:>8} {:>9}", NumberText(step), NumberText(report.judge->Nominal(step).shortest));
+    const double step = report.judge->steps()[i], shortest = report.judge->Nominal(step).shortest;
+    text += fmt::format("  {:>8} {:>9}", NumberText(step), NumberText(shortest));
     for (const Proposal& proposal : report.proposals) {
       const StepResult& r = proposal.steps[i];
-      text += fmt::format("  | {:>9} {:>6} {:>13.1f}", r.settled ? NumberText(r.settling) : "never",
+      text += fmt::format("  | {:>9} {:>6} {:>13.1f}",
+                          r.settled ? NumberText(r.settling) : ">" + NumberText(kNeverSettled * shortest),
                           RatioText(r.ratio), r.overshoot_percent);
     }
     text += "\n";

@@ -74,6 +74,18 @@ TEST_F(ProveTest, AValueThatNoBalanceShows) {
   EXPECT_LE(TypicalGap(proved.Best().near), diagnose::kCloseEnough);
 }
 
+// Tests that a value that is off by as much as it is uncertain is found: a whole step of the race leads past
+// it to where the gap is no smaller, as an outsider's displacement of 5 % was.
+TEST_F(ProveTest, RacesFromWithinTheUncertainty) {
+  model::ModelDescription truth = Table1With();
+  truth.parameters.k_1 *= 1.05;
+  Record(truth);
+  context_.changes = {{"", {}, "k_1"}};
+  const Proof proved = Prove({Proposed({}, {})});
+  EXPECT_NEAR(proved.Found().model.parameters.k_1 / truth.parameters.k_1, 1, 0.01);
+  EXPECT_LE(TypicalGap(proved.Best().near), diagnose::kCloseEnough);
+}
+
 // Tests that held-out runs of another machine than the fitted ones move no value: what is to be proved by a
 // run is not fitted to it.
 TEST_F(ProveTest, HeldOutRunsMoveNoValue) {

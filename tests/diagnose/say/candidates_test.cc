@@ -127,13 +127,19 @@ TEST(ChoicesWithoutEach, OnlyWhereTheOthersCanChoose) {
 
 // Tests that the remark names the runs that chose what then predicts them, and claims no proof of these.
 TEST(ChoiceRemark, SaysWhatChoseWhat) {
-  EXPECT_THAT(diagnose::ChoiceRemark({{"a", "amp.lag", true}, {"b", "amp.lag", true}}),
-              AllOf(HasSubstr("the others choose the same without it"), Not(HasSubstr("no proof"))));
-  EXPECT_THAT(
-      diagnose::ChoiceRemark({{"a", "as given", false}, {"b", "amp.lag", true}, {"c", "parameter b", false}}),
-      AllOf(HasSubstr("without run a the others choose the model as given"),
-            HasSubstr("without run c the others choose another value of b"),
-            HasSubstr("how well runs a and c are predicted is no proof"), HasSubstr("--hold-out")));
+  diagnose::Diagnosis d;
+  d.choices = {{"a", "amp.lag", true}, {"b", "amp.lag", true}};
+  EXPECT_THAT(diagnose::ChoiceRemark(d),
+              AllOf(HasSubstr("Each run was predicted from the others"),
+                    HasSubstr("the others choose the same without it"), Not(HasSubstr("no proof"))));
+  d.half_fitted = true;
+  EXPECT_THAT(diagnose::ChoiceRemark(d), AllOf(HasSubstr("a model that saw half of each run"),
+                                               Not(HasSubstr("predicted from the others"))));
+  d.choices = {{"a", "as given", false}, {"b", "amp.lag", true}, {"c", "parameter b", false}};
+  EXPECT_THAT(diagnose::ChoiceRemark(d),
+              AllOf(HasSubstr("without run a the others choose the model as given"),
+                    HasSubstr("without run c the others choose another value of b"),
+                    HasSubstr("how well runs a and c are predicted is no proof"), HasSubstr("--hold-out")));
 }
 
 }  // namespace

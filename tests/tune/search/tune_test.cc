@@ -125,7 +125,7 @@ std::pair<double, double> OverTheTravel(const std::string& out) {
   std::istringstream row(out.substr(out.find("over the travel") + 15));
   std::vector<double> ratios;
   for (std::string word; row >> word && word != "uncertain";) {
-    if (word != "|") ratios.push_back(word == "never" || word == "stops" ? HUGE_VAL : std::stod(word));
+    if (word != "|") ratios.push_back(word[0] == '>' || word == "stops" ? HUGE_VAL : std::stod(word));
   }
   return {ratios.front(), ratios.back()};
 }
