@@ -381,6 +381,8 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   if (motor_alone) SpeakOfTheMotor(&diagnosis);
   Diagnosis shown = diagnosis;
   if (motor_alone) ShowTheMotorAlone(&shown);
+  if (diagnosis.next.config.empty())
+    CheckKeeps(request.folder + "/next.toml");  // which goes, but no sidecar does
   WriteAll(request.folder, ReportFiles(diagnosis, shown, given, request.si, elapsed));
   std::error_code error;
   if (diagnosis.next.config.empty())

@@ -251,6 +251,8 @@ struct Diagnosis {
   // Whether runs were held out in turn, and every second window of each was fitted all the same: then
   // held-out gaps of whole runs are those of a model that saw half of each.
   bool half_fitted = false;
+  bool recorder_may_be =
+      false;  // what was found is a delay that the recorder may cause (MayBeTheRecorders())
   size_t samples = 0;
 };
 

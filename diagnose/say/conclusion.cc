@@ -124,7 +124,9 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   d.horizons = HorizonGaps(context, proof);
   d.noise_shown = NoiseShown(context.runs);
   const double growth = proof.best == proof.given ? GrowthOver(context) : 1;
-  d.verdict = VerdictOn(d, proof, proposed.scores, JudgedBy(context.runs, growth));
+  const RunsJudged judged = JudgedBy(context.runs, growth);
+  d.recorder_may_be = MayBeTheRecorders(d, proposed.scores, judged);
+  d.verdict = VerdictOn(d, proof, proposed.scores, judged);
   const bool values_alone = d.effects.empty() && d.closures.empty() && proof.best != proof.given;
   const bool nothing_missing = d.verdict == Verdict::kNothingMissing;
   const BeforeAfter gap = GapToCompare(d, proof).gap;

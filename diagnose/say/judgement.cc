@@ -129,6 +129,24 @@ bool IsTheRecorders(const Diagnosis& d, double sample) {
   });
 }
 
+// Whether some effect may as well be absent: 0 lies within the intervals of all its amounts. The fitted runs
+// do not show it, and held-out windows alone name nothing: what is small and late, say, helps itself to a
+// drift.
+bool MayBeAbsent(const FoundEffect& effect) {
+  const model::EffectInfo* info = model::FindEffect(effect.id);
+  if (info == nullptr || IsUnseenByBalances(effect.id)) return false;
+  size_t amounts = 0, none = 0;
+  for (const model::ParameterInfo& parameter : info->parameters) {
+    if (!IsAmount(parameter)) continue;
+    for (const Estimated& one : effect.parameters) {
+      if (one.name != parameter.name || !std::isfinite(one.low) || !std::isfinite(one.high)) continue;
+      ++amounts;
+      if (one.low <= 0 && one.high >= 0) ++none;
+    }
+  }
+  return amounts > 0 && none == amounts;
+}
+
 }  // namespace
 
 ComparedGap GapToCompare(const Diagnosis& d, const Proof& proof) {
@@ -167,6 +185,10 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
   return true;
 }
 
+bool MayBeTheRecorders(const Diagnosis& d, const std::vector<ScoredSet>& scores, const RunsJudged& runs) {
+  return HasOneWitness(d, scores) && IsTheRecorders(d, runs.sample);
+}
+
 Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
                   const RunsJudged& runs) {
   const bool one_witness = HasOneWitness(d, scores);
@@ -184,10 +206,11 @@ Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<Scor
     return something && !one_witness ? Verdict::kPartly : Verdict::kUnexplained;
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
-  if (one_witness && IsTheRecorders(d, runs.sample)) return Verdict::kUnexplained;
+  if (MayBeTheRecorders(d, scores, runs)) return Verdict::kUnexplained;
   const bool tied =
       std::ranges::any_of(d.effects, [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
-  return tied ? Verdict::kTied : Verdict::kNamed;
+  if (tied) return Verdict::kTied;
+  return std::ranges::any_of(d.effects, MayBeAbsent) ? Verdict::kUnexplained : Verdict::kNamed;
 }
 
 }  // namespace hydro::diagnose

@@ -29,14 +29,19 @@ struct RunsJudged {
 };
 RunsJudged JudgedBy(const std::vector<const RunData*>& runs, double growth);
 
+// Whether all that was found are times of at most two samples for which only simulation speaks: means over a
+// sample and filters of a recorder are as late, and balances allow for them. `scores` as below.
+bool MayBeTheRecorders(const Diagnosis& d, const std::vector<ScoredSet>& scores, const RunsJudged& runs);
+
 // `d` already has the effects, parameters, closures and gaps. All that was found was proved. The verdict is
 // "named" where only noise is left, "tied" where an alternative does as well, and "partly" where more than
 // noise is left or a closure is part of what was found. A remaining gap is "unexplained" where only
 // simulation speaks for the effects although balances could (IsUnseenByBalances()): none of the effects, nor
 // what they are tied with, has a probability of one in twenty, by weight or by `scores` (the balances' scores
 // of sets, best first), unless other values do as well too. The same holds for times of at most two samples
-// for which only simulation speaks, because recorders cause such times. "Nothing missing" allows whole runs
-// to leave more than windows, in proportion to their length and to the growth of errors in them.
+// for which only simulation speaks (MayBeTheRecorders()), and for an effect whose amounts may all be 0 by
+// their intervals, unless something is tied with it. "Nothing missing" allows whole runs to leave more than
+// windows, in proportion to their length and to the growth of errors in them.
 Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
                   const RunsJudged& runs);
 

@@ -148,6 +148,9 @@ std::string Unexplained(const Diagnosis& d, const ComparedGap& compared,
   if (!Falls(gap))
     return sentence + "; the nearest, " + Enumerated(effects) + ", takes nothing of the " +
            (compared.of_fitted ? "fitted" : "held-out") + " gap";
+  if (d.recorder_may_be && compared.closed)
+    return "Something acts late, by no more than two samples: " + Enumerated(effects) +
+           " explains the runs to the noise, and so may the recorder, whose means and filters are as late";
   sentence += "; the nearest is " + Enumerated(effects);
   // Where only noise is left, no share says anything.
   if (!std::isfinite(gap.before) || !(gap.before > 1 && gap.after > 1)) return sentence;

@@ -96,6 +96,21 @@ TEST(VerdictOn, AGapBesideASingleWitness) {
   EXPECT_EQ(one.Of(), Verdict::kNamed) << "no gap is left";
 }
 
+// Tests that an effect that by its interval may as well be absent is not named, though held-out windows like
+// it.
+TEST(VerdictOn, WhatMayBeAbsentIsNotNamed) {
+  Judged one({12, 6, 1.2}, {30, 12, 2});
+  one.d.effects[0].id = "fluid.warming";
+  one.d.effects[0].parameters = {{"rate", 5e-4, -1e-3, 2e-3, "1/s"}};
+  one.d.explanations = {{{"fluid.warming"}, 1}};
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+  one.d.effects[0].tied_with = {"amp.lag"};
+  EXPECT_EQ(one.Of(), Verdict::kTied);
+  one.d.effects[0].tied_with.clear();
+  one.d.effects[0].parameters[0].low = 1e-4;
+  EXPECT_EQ(one.Of(), Verdict::kNamed);
+}
+
 // Tests that a lag of a sample or two that simulation alone speaks for is not named where it closes the gap,
 // and that a longer one is, and one of which balances speak.
 TEST(VerdictOn, WhatARecorderDoesToo) {

@@ -95,6 +95,17 @@ TEST(Sentence, ValuesThatTheRunsDoNotShow) {
   EXPECT_THAT(Said(d), Not(HasSubstr("0.03")));
 }
 
+// Tests that a delay that the recorder may cause is said as such, and not as something that nothing explains.
+TEST(Sentence, WhatTheRecorderMayCause) {
+  diagnose::Diagnosis d = With(Verdict::kUnexplained);
+  d.recorder_may_be = true;
+  const diagnose::ComparedGap closed{{12, 6, 1.01}, 0.4, true};
+  EXPECT_THAT(diagnose::Sentence(d, closed),
+              AllOf(HasSubstr("and so may the recorder"), Not(HasSubstr("no known effect"))));
+  EXPECT_THAT(diagnose::Sentence(d, {{12, 6, 4}, 0.4}),
+              HasSubstr("no known effect explains; the nearest is"));
+}
+
 // Tests that a change that rounds to nothing is not claimed.
 TEST(Sentence, NoImprovementIsClaimed) {
   diagnose::Diagnosis d = With(Verdict::kUnexplained);
