@@ -269,6 +269,7 @@ Diagnosis ProveAndConclude(const ProofContext& context, const Hypothesis& as_giv
   diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
   if (!IsOpen(diagnosis.verdict) || !options.per_run.empty() || diagnosis.per_run.empty()) return diagnosis;
   const ValueByRun& own = diagnosis.per_run.front();
+  if (!(own.after < own.before)) return diagnosis;  // windows do not confirm what the balances say
   const double weight = WeightOf(proposed->weights, "run." + own.name);
   proposed->proposals.insert(proposed->proposals.begin(), WithOwnValues(context, allowed, own.name, weight));
   Diagnosis again = prove();

@@ -5,6 +5,7 @@
 
 #include "base/maths/spread.h"
 #include "base/number_text.h"
+#include "diagnose/balances/effect_variants.h"
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/fit/intervals.h"
