@@ -4,6 +4,7 @@ import json
 import math
 import os
 import signal
+import statistics
 
 import board
 import event_log
@@ -67,6 +68,7 @@ class DriverRunTest(DriverCase):
         log_file, json_file = self.path("run.lcmlog"), self.path("summary.json")
         launch = self.launch(stack.config("driver.toml"), *self.options(self.board, *settings), "--log", log_file)
         self.assertEqual(launch.wait(60), 0, launch.report())
+        self.left = self.board.read()  # at once, because the pressures go on to leak
         self.run_program("hydro-log", "summary", log_file, "--json", json_file)
         with open(json_file, encoding="utf-8") as file:
             return event_log.Log(log_file), json.load(file)
@@ -86,14 +88,16 @@ class DriverRunTest(DriverCase):
         self.assertEqual((left.role, bool(left.accepted)), ("driver", True))
         self.assertLess(abs(left.voltage), 4e-4)
 
-        registers = self.board.read()
+        registers = self.left
         self.assertAlmostEqual(registers["arm_angle"], 0.1, delta=0.01)  # the arm's own word
         last = log.states[-1]
         self.assertAlmostEqual(last.arm_angle, registers["arm_angle"], delta=0.002)
         for name in ("p1", "p2"):
             self.assertGreater(min(getattr(s, name) for s in log.states), 99)
             self.assertGreater(max(getattr(s, name) for s in log.states), 110)
-            self.assertAlmostEqual(getattr(last, name), registers[name], delta=5)
+            # They swing by several psi until the voltage is zero.
+            mean = statistics.fmean(getattr(s, name) for s in log.states if s.time > last.time - 0.3)
+            self.assertAlmostEqual(mean, registers[name], delta=5)
         # The encoder's counter has wrapped, but the angle has not.
         self.assertGreater(max(s.motor_angle for s in log.states), 1)
         counts = round(last.motor_angle / (2 * math.pi / 4096))
