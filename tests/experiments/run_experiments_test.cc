@@ -193,10 +193,13 @@ TEST_F(RunExperimentsTest, WrongUsage) {
   EXPECT_EQ(refusal(run), "x.csv: no steady state");
   run.folder = folder_ / "out";
   run.options.measured_run = run.folder + "/friction.csv";
+  EXPECT_FALSE(std::filesystem::exists(run.folder)) << "left by a refusal";
+  std::filesystem::create_directory(run.folder);
   std::ofstream(run.options.measured_run) << "time_s\n0\n";
   EXPECT_THAT(refusal(run), HasSubstr("out/friction.csv: found the name of a file that is read"));
   EXPECT_EQ(errors_, "");  // so that the caller's line is the only one
-  EXPECT_THAT(refusal({.name = "fig3", .folder = "/proc/none"}), HasSubstr("--out: the folder '/proc/none'"));
+  EXPECT_THAT(refusal({.name = "fig3", .folder = "/proc/none"}),
+              HasSubstr("--out: found \"/proc/none\", a folder that cannot be written"));
 }
 
 // Tests that an experiment whose numbers are no object, or hide a key common to all files, is a programming
