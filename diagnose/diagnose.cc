@@ -242,14 +242,6 @@ class TimeLimit {
   std::atomic<bool> struck_ = false;
 };
 
-// The weight of a set with this change alone.
-double WeightOf(const ExplanationWeights& weights, const std::string& change) {
-  for (const WeighedExplanation& one : weights.explanations) {
-    if (one.changes == ChangeSet{change}) return one.weight;
-  }
-  return 0;
-}
-
 // Proves what the balances propose. Fitted runs of which only one shows a value (a payload) cannot propose
 // that it differs by run. So where a gap is left, and values of runs predict windows that did not see them
 // better, they are proposed too. They are said where they close the gap: in part, any value of a run's own
@@ -270,8 +262,8 @@ Diagnosis ProveAndConclude(const ProofContext& context, const Hypothesis& as_giv
   if (!IsOpen(diagnosis.verdict) || !options.per_run.empty() || diagnosis.per_run.empty()) return diagnosis;
   const ValueByRun& own = diagnosis.per_run.front();
   if (!(own.after < own.before)) return diagnosis;  // windows do not confirm what the balances say
-  const double weight = WeightOf(proposed->weights, "run." + own.name);
-  proposed->proposals.insert(proposed->proposals.begin(), WithOwnValues(context, allowed, own.name, weight));
+  proposed->proposals.insert(proposed->proposals.begin(),
+                             WithOwnValues(context, allowed, own.name, *proposed));
   Diagnosis again = prove();
   if (again.by_run.empty() || again.verdict != Verdict::kParameters) return diagnosis;
   again.per_run = ValuesByRun(context, again.model, options.per_run, allowed);

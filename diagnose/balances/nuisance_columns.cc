@@ -28,6 +28,15 @@ constexpr double kLoad = 0.03;
 
 std::string OfRun(const std::string& name, size_t run) { return name + "[" + std::to_string(run) + "]"; }
 
+// The value of one run in the parameter of this column, which differs by `sd` between runs: relative, or for
+// a parameter given as 0 in its unit.
+void AddOfRun(ColumnMaker* maker, int column, const std::string& name, size_t run, double sd) {
+  ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(column)];
+  meaning.run = static_cast<int>(run);
+  meaning.unit = 1;
+  maker->AddAlias({OfRun(name, run), "", sd, false}, meaning, column, meaning.run);
+}
+
 // A first-order lag.
 Eigen::VectorXd Lagged(const Eigen::VectorXd& x, double step, double time) {
   const double keep = std::exp(-step / time);
@@ -121,11 +130,7 @@ void AddFriction(ColumnMaker* maker) {
   const double usual = std::max(given, kLeastFriction * torque);
   const double unit = given != 0 ? given : 1;
   for (size_t r = 0; r < maker->runs->size(); ++r) {
-    ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*friction)];
-    meaning.run = static_cast<int>(r);
-    meaning.unit = 1;
-    maker->AddAlias({OfRun("T_s", r), "", kFrictionByRun * usual / unit, false}, meaning, *friction,
-                    static_cast<int>(r));
+    AddOfRun(maker, *friction, "T_s", r, kFrictionByRun * usual / unit);
     for (const bool sine : {true, false}) {
       const int column =
           maker->Add({OfRun(sine ? "turn.sin" : "turn.cos", r), "", kFrictionByRun * usual / unit, false});
@@ -147,11 +152,7 @@ void AddFriction(ColumnMaker* maker) {
     const double b = maker->given().b, speed = maker->setup->sizes.speed;
     const double part = b != 0 || !(speed > 0) ? 1 : kLeastFriction * torque / speed;
     for (size_t r = 0; r < maker->runs->size(); ++r) {
-      ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*viscous)];
-      meaning.run = static_cast<int>(r);
-      meaning.unit = 1;
-      maker->AddAlias({OfRun("b", r), "", kFrictionByRun * part, false}, meaning, *viscous,
-                      static_cast<int>(r));
+      AddOfRun(maker, *viscous, "b", r, kFrictionByRun * part);
     }
   }
 }
@@ -161,12 +162,8 @@ void AddPressures(ColumnMaker* maker) {
   const std::optional<int> charge = maker->Named("p_3");
   for (size_t r = 0; r < maker->runs->size(); ++r) {
     if (!maker->Motion(r).pressures) continue;
-    if (charge && maker->given().p_3 != 0) {
-      ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*charge)];
-      meaning.run = static_cast<int>(r);
-      maker->AddAlias({OfRun("p_3", r), "", sd / std::abs(maker->given().p_3), false}, meaning, *charge,
-                      static_cast<int>(r));
-    }
+    if (charge && maker->given().p_3 != 0)
+      AddOfRun(maker, *charge, "p_3", r, sd / std::abs(maker->given().p_3));
     for (const GridChannel side : {GridChannel::kP1, GridChannel::kP2}) {
       if (maker->Motion(r).IsLatent(side)) continue;
       const std::string name = side == GridChannel::kP1 ? "p1_offset" : "p2_offset";
@@ -215,10 +212,7 @@ void AddLoads(ColumnMaker* maker) {
     if (!load) continue;
     for (size_t r = 0; r < maker->runs->size(); ++r) {
       if (!CanForm(maker->Motion(r), BalanceKind::kArm)) continue;
-      ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*load)];
-      meaning.run = static_cast<int>(r);
-      meaning.unit = 1;
-      maker->AddAlias({OfRun(name, r), "", sd, false}, meaning, *load, static_cast<int>(r));
+      AddOfRun(maker, *load, name, r, sd);
     }
   }
 }

@@ -377,11 +377,11 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
 }
 
 Proposal WithOwnValues(const ProofContext& context, const std::vector<size_t>& allowed,
-                       const std::string& parameter, double weight) {
+                       const std::string& parameter, const Proposed& proposed) {
   Proposal proposal;
   proposal.model = context.given;
   proposal.base = {model::BasePlace(parameter)};
-  proposal.weight = weight;
+  proposal.weight = WeightOf(proposed.weights, {"run." + parameter});
   proposal.by_run = {parameter};
   proposal.without = ModelsOfRuns(context, allowed, context.given, proposal.by_run);
   return proposal;

@@ -37,8 +37,8 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
                  const std::vector<std::string>& inverted = {});
 
 // The model as given, with each predicted run's own value of a base parameter that may differ from day to day
-// (ValuesOfADay()), as the run's balances show it. `weight`: of such a set among all that were proposed.
+// (ValuesOfADay()), as the run's balances show it. Its weight is that of this change alone in `proposed`.
 Proposal WithOwnValues(const ProofContext& context, const std::vector<size_t>& allowed,
-                       const std::string& parameter, double weight);
+                       const std::string& parameter, const Proposed& proposed);
 
 }  // namespace hydro::diagnose
